@@ -1,0 +1,39 @@
+// Sixteen shapes side by side: what a leaf of either hierarchy holds, and what one ray or beam is tested against.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace raywalk {
+
+inline constexpr int block_width = 16;
+
+// corner[i][axis][lane]: corner i of the triangle in that lane. Empty lanes hold NaN and id -1: every comparison with
+// a NaN is false, so they are never hit (hence no -ffast-math).
+struct alignas(64) TriangleBlock {
+    float corner[3][3][block_width];
+    std::int32_t id[block_width];  // triangle index, CompiledScene order
+};
+
+// Empty lanes hold a NaN centre, radius 0 and id -1.
+struct alignas(64) SphereBlock {
+    float center[3][block_width];
+    float radius[block_width];
+    std::int32_t id[block_width];  // sphere index (not yet offset by the triangle count)
+};
+
+inline void clear(TriangleBlock& block) {
+    for (auto& corner : block.corner)
+        for (auto& axis : corner)
+            for (float& value : axis) value = std::numeric_limits<float>::quiet_NaN();
+    for (std::int32_t& id : block.id) id = -1;
+}
+
+inline void clear(SphereBlock& block) {
+    for (auto& axis : block.center)
+        for (float& value : axis) value = std::numeric_limits<float>::quiet_NaN();
+    for (float& radius : block.radius) radius = 0;
+    for (std::int32_t& id : block.id) id = -1;
+}
+
+}  // namespace raywalk

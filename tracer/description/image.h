@@ -1,0 +1,42 @@
+// Pictures in and out. OpenImageIO does the work, in a module that is loaded on the first call, because linking it
+// costs every start 0.2-0.35 s.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tracer/description/limits.h"
+#include "tracer/ground/error.h"
+
+namespace raywalk {
+
+// 8-bit RGB, packed 0x00BBGGRR per texel (red in the lowest byte), row 0 on top.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<std::uint32_t> texels;
+};
+
+// Reads PNG, JPEG, TIFF, EXR or HDR (told by content, nothing else is tried). Throws InputError placed at `where`.
+Image read_image(const std::filesystem::path& file, const Limits& limits, const SourceLocation& where);
+
+// Linear RGB, 3 floats a pixel, row 0 on top.
+struct FloatImage {
+    int width = 0, height = 0;
+    std::vector<float> rgb;
+};
+
+// True for .png .jpg .jpeg .exr .pfm .hdr .tif .tiff (any case).
+bool is_image_extension(const std::filesystem::path& file);
+// True where the format holds linear floats (.exr .pfm .hdr .tif .tiff), false where it holds 8-bit display values.
+bool is_float_extension(const std::filesystem::path& file);
+
+// Writes `file` whole or not at all (temporary name beside it, then rename); the extension chooses the format.
+// Throws WorkError naming the file and the system's reason.
+void write_image(const std::filesystem::path& file, const FloatImage& image);
+// 8-bit RGB, 3 bytes a pixel; formats as above (a float format gets value / 255).
+void write_image(const std::filesystem::path& file, int width, int height, std::span<const std::uint8_t> rgb);
+
+}  // namespace raywalk

@@ -1,0 +1,55 @@
+// What a wrong input is told: where, what, what was expected, what to do.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace raywalk {
+
+// A place in a text file. Lines and columns count from 1 (columns in bytes); 0 means "the file as a whole".
+struct SourceLocation {
+    std::string file;
+    std::size_t line = 0;
+    std::size_t column = 0;
+    std::size_t length = 1;  // bytes under the caret
+    friend bool operator==(const SourceLocation&, const SourceLocation&) = default;
+};
+
+enum class Severity { warning, error };
+
+// One message about one place. `source_line` is the offending line as written (empty when there is none).
+struct Diagnostic {
+    Severity severity = Severity::error;
+    SourceLocation where;
+    std::string what;      // "unknown property 'cente'"
+    std::string expected;  // "did you mean 'center'?" or what would be right; may be empty
+    std::string source_line;
+    friend bool operator==(const Diagnostic&, const Diagnostic&) = default;
+};
+
+// file:line:column: error: what
+//   the line
+//   ^~~~ expected
+std::string to_string(const Diagnostic& diagnostic);
+
+// Wrong input: one or several diagnostics (exit code 3).
+class InputError : public std::runtime_error {
+  public:
+    explicit InputError(std::vector<Diagnostic> diagnostics);
+    explicit InputError(Diagnostic diagnostic) : InputError(std::vector{std::move(diagnostic)}) {}
+    [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+
+  private:
+    std::vector<Diagnostic> diagnostics_;
+};
+
+// The work failed through no fault of the input: disk full, device lost (exit code 1).
+class WorkError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace raywalk

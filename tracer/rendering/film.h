@@ -1,0 +1,40 @@
+// Accumulated radiance, stored tile by tile in the order in which the kernels make it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tracer/description/image.h"
+#include "tracer/ground/aligned.h"
+
+namespace raywalk {
+
+inline constexpr int tile_size = 8;                         // pixels a side
+inline constexpr int tile_pixels = tile_size * tile_size;   // 64 = four groups of 4x4 = four registers of 16 lanes
+
+// Pixel `lane` of a tile: group lane / 16 is the 4x4 block at (4 (g & 1), 4 (g >> 1)), rows of four inside it.
+constexpr int tile_pixel_x(int lane) { return ((lane >> 4) & 1) * 4 + (lane & 3); }
+constexpr int tile_pixel_y(int lane) { return (lane >> 5) * 4 + ((lane >> 2) & 3); }
+
+// Sums of samples of one tile: rgb[channel][lane]. Linear radiance.
+struct alignas(64) FilmTile {
+    float rgb[3][tile_pixels];
+};
+
+struct Film {
+    int width = 0, height = 0;      // pixels
+    int tiles_x = 0, tiles_y = 0;   // ceil(size / tile_size); lanes beyond the edge are traced into nothing
+    AlignedVector<FilmTile> tiles;  // row by row
+    std::vector<std::uint32_t> samples;  // per tile: how many are summed
+
+    Film() = default;
+    Film(int width, int height);
+    void clear();
+};
+
+// Mean radiance, rows from the top; tiles without a sample are black.
+FloatImage mean_radiance(const Film& film);
+// Factor that brings the largest channel of the mean to 1 where it is over 1, else 1 (spec 4.8 `normalize`).
+float normalizing_exposure(const Film& film);
+
+}  // namespace raywalk

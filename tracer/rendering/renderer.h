@@ -1,0 +1,54 @@
+// Scene + view -> film, sample by sample, on all cores.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "tracer/compiled/compiled_scene.h"
+#include "tracer/kernels/kernels.h"
+#include "tracer/rendering/camera.h"
+#include "tracer/rendering/film.h"
+
+namespace raywalk {
+
+// Everything the accumulated picture depends on; compared by value.
+struct View {
+    Camera camera;
+    int width = 0, height = 0;
+    SampleSettings settings;
+    friend bool operator==(const View&, const View&) = default;
+};
+
+class Renderer {
+  public:
+    // `scene` must outlive the renderer. `kernels` null: the best of this machine. `threads` 0: every core allowed.
+    explicit Renderer(const CompiledScene& scene, const Kernels* kernels = nullptr, int threads = 0);
+
+    // The only place that clears the film; does nothing when nothing changed.
+    void set_view(const View& view);
+    [[nodiscard]] const View& view() const { return view_; }
+
+    // Adds samples to every tile up to `samples_per_pixel` in all, then returns true; false when `cancel` was set
+    // before that (tiles done so far stay, each whole). `tile_done(tile index)` is called by the tracing threads.
+    bool render_until(std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
+                      const std::function<void(int)>& tile_done = {});
+
+    [[nodiscard]] const Film& film() const { return film_; }
+    [[nodiscard]] std::uint32_t samples() const { return samples_; }  // that every tile has
+    [[nodiscard]] const RayCounts& ray_counts() const { return counts_; }
+    [[nodiscard]] int threads() const { return threads_; }
+    [[nodiscard]] const Kernels& kernels() const { return *kernels_; }
+
+  private:
+    const CompiledScene* scene_;
+    const Kernels* kernels_;
+    int threads_;
+    View view_;
+    Film film_;
+    std::uint32_t samples_ = 0;
+    RayCounts counts_;
+    std::vector<TileScratchPointer> scratch_;
+};
+
+}  // namespace raywalk
