@@ -1,0 +1,36 @@
+// Rays against the compiled scene: the doors of traversal, one set per instruction set.
+// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
+
+#if defined(RAYWALK_KERNELS_INTERSECT_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYWALK_KERNELS_INTERSECT_H
+#undef RAYWALK_KERNELS_INTERSECT_H
+#else
+#define RAYWALK_KERNELS_INTERSECT_H
+#endif
+
+#include <cstdint>
+
+#include "tracer/compiled/compiled_scene.h"
+#include "tracer/kernels/ray_arrays.h"
+
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace raywalk {
+namespace HWY_NAMESPACE {
+
+// Nearest hits of the `active` rays (bit l: ray l) of a beam; the other lanes of `hits` become misses.
+void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits& hits);
+
+// Which of the `active` rays meet anything at t in (t_min, t_max).
+std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active);
+
+// Nearest hit of one ray, and whether it meets anything: for rays that share neither origin nor direction.
+RayHit intersect_ray(const CompiledScene& scene, const Ray& ray);
+bool occluded_ray(const CompiledScene& scene, const Ray& ray);
+
+}  // namespace HWY_NAMESPACE
+}  // namespace raywalk
+HWY_AFTER_NAMESPACE();
+
+#endif  // RAYWALK_KERNELS_INTERSECT_H
