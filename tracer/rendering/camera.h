@@ -23,10 +23,16 @@ struct Camera {
     friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-// The camera with which the scene opens (spec 4.1, 4.2, and `T` in 2 for scenes without `view`).
-// `aspect` = width / height of the picture.
+// The camera with which the scene opens: orthographic where it has `view` or `projection` says so. Without `view` the
+// orthographic viewport keeps the picture's size at the distance of the target. `aspect` = width / height of the
+// picture; where it is not that of the scene's `geo`, a viewport keeps its height and changes its width.
 Camera opening_camera(const Viewer& viewer, double aspect, std::optional<Projection> projection = {});
 
+// Perspective becomes orthographic and back; nothing else changes.
 Camera toggled_projection(const Camera& camera);
+
+// The same camera for a picture of another shape: the height of what is seen stays, the width follows.
+// Aspects are width / height.
+Camera reshaped(const Camera& camera, double old_aspect, double new_aspect);
 
 }  // namespace raywalk

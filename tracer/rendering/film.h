@@ -9,8 +9,8 @@
 
 namespace raywalk {
 
-inline constexpr int tile_size = 8;                         // pixels a side
-inline constexpr int tile_pixels = tile_size * tile_size;   // 64 = four groups of 4x4 = four registers of 16 lanes
+inline constexpr int tile_size = 8;                        // pixels a side
+inline constexpr int tile_pixels = tile_size * tile_size;  // 64 = four groups of 4x4 = four registers of 16 lanes
 
 // Pixel `lane` of a tile: group lane / 16 is the 4x4 block at (4 (g & 1), 4 (g >> 1)), rows of four inside it.
 constexpr int tile_pixel_x(int lane) { return ((lane >> 4) & 1) * 4 + (lane & 3); }
@@ -22,15 +22,24 @@ struct alignas(64) FilmTile {
 };
 
 struct Film {
-    int width = 0, height = 0;      // pixels
-    int tiles_x = 0, tiles_y = 0;   // ceil(size / tile_size); lanes beyond the edge are traced into nothing
-    AlignedVector<FilmTile> tiles;  // row by row
+    int width = 0, height = 0;           // pixels
+    int tiles_x = 0, tiles_y = 0;        // ceil(size / tile_size); lanes beyond the edge are traced into nothing
+    AlignedVector<FilmTile> tiles;       // row by row
     std::vector<std::uint32_t> samples;  // per tile: how many are summed
 
     Film() = default;
-    Film(int width, int height);
+    Film(int pixels_wide, int pixels_high) { resize(pixels_wide, pixels_high); }
+    // Another size, and no samples. Memory is kept for the next size.
+    void resize(int pixels_wide, int pixels_high);
+    // Forgets the samples; the sums of a tile are set to zero when its next first sample is traced.
     void clear();
 };
+
+// The one factor between a tile's sums and its values, so that files and windows agree bit for bit: every value is
+// sum * film_scale(exposure, samples). 0 for no samples.
+inline float film_scale(float exposure, std::uint32_t samples) {
+    return samples == 0 ? 0.0f : exposure / static_cast<float>(samples);
+}
 
 // Mean radiance, rows from the top; tiles without a sample are black.
 FloatImage mean_radiance(const Film& film);

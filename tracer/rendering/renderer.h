@@ -22,7 +22,7 @@ struct View {
 
 class Renderer {
   public:
-    // `scene` must outlive the renderer. `kernels` null: the best of this machine. `threads` 0: every core allowed.
+    // `scene` must outlive the renderer. `kernels` null: the best of this machine. `threads` 0: as many as OpenMP has.
     explicit Renderer(const CompiledScene& scene, const Kernels* kernels = nullptr, int threads = 0);
 
     // The only place that clears the film; does nothing when nothing changed.
@@ -30,7 +30,8 @@ class Renderer {
     [[nodiscard]] const View& view() const { return view_; }
 
     // Adds samples to every tile up to `samples_per_pixel` in all, then returns true; false when `cancel` was set
-    // before that (tiles done so far stay, each whole). `tile_done(tile index)` is called by the tracing threads.
+    // before that (what tiles have so far stays, each sample whole; a later call goes on from there and ends with the
+    // same bits). `tile_done(tile index)` is called by the tracing threads, and must not throw.
     bool render_until(std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
                       const std::function<void(int)>& tile_done = {});
 
@@ -48,7 +49,11 @@ class Renderer {
     Film film_;
     std::uint32_t samples_ = 0;
     RayCounts counts_;
-    std::vector<TileScratchPointer> scratch_;
+    std::vector<TileScratchPointer> scratch_;  // one per thread
 };
+
+// Display values of a film, 3 bytes a pixel, rows from the top: round(255 clamp(mean * exposure)), by the same
+// kernel as the window's. Tiles without a sample are black.
+std::vector<std::uint8_t> display_values(const Film& film, const Kernels& kernels, float exposure);
 
 }  // namespace raywalk

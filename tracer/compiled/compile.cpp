@@ -1,0 +1,282 @@
+// Scene -> CompiledScene: the one place that sees both.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <future>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <unordered_map>
+
+#include "tracer/compiled/compiled_scene.h"
+#include "tracer/compiled/mesh_placement.h"
+#include "tracer/compiled/scene_files.h"
+#include "tracer/ground/stopwatch.h"
+
+namespace raywalk {
+
+namespace {
+
+// Surfaces by value: shapes that look the same share a record.
+class SurfaceTable {
+  public:
+    // `image_indices`: each image file's index in CompiledScene::images.
+    explicit SurfaceTable(std::map<std::filesystem::path, std::int32_t> image_indices)
+        : image_indices_(std::move(image_indices)) {}
+
+    std::int32_t index_of(const Texture& texture) {
+        const SurfaceRecord record = record_of(texture);
+        std::string key(sizeof record, '\0');
+        std::memcpy(key.data(), &record, sizeof record);  // every byte is a member's
+        const auto [place, is_new] = indices_.emplace(std::move(key), static_cast<std::int32_t>(records.size()));
+        if (is_new) records.push_back(record);
+        return place->second;
+    }
+
+    AlignedVector<SurfaceRecord> records;
+
+  private:
+    [[nodiscard]] SurfaceRecord record_of(const Texture& texture) const {
+        SurfaceRecord record{};
+        record.ambient = static_cast<float>(texture.material.ambient);
+        record.specular = static_cast<float>(texture.material.specular);
+        record.reflection = static_cast<float>(texture.material.reflection);
+        record.transmission = static_cast<float>(texture.material.transmission);
+        record.shininess = texture.material.shininess;
+        if (const auto* pure = std::get_if<PureTexture>(&texture.pattern)) {
+            record.pattern = Pattern::pure;
+            for (int channel = 0; channel < 3; ++channel)
+                record.color[channel] = static_cast<float>(pure->color[channel]);
+        } else if (const auto* grid = std::get_if<GridTexture>(&texture.pattern)) {
+            record.pattern = Pattern::grid;
+            record.scale = static_cast<float>(grid->density);
+        } else if (const auto* image = std::get_if<ImageTexture>(&texture.pattern)) {
+            record.pattern = Pattern::image;
+            record.scale = 1.0f / static_cast<float>(image->size);
+            record.image = image_indices_.at(image->file);
+        }
+        return record;
+    }
+
+    std::map<std::filesystem::path, std::int32_t> image_indices_;
+    std::unordered_map<std::string, std::int32_t> indices_;
+};
+
+// Image file -> index, in the order of their names; known before any is read.
+std::map<std::filesystem::path, std::int32_t> image_indices(const Scene& scene) {
+    std::map<std::filesystem::path, std::int32_t> indices;
+    for (const Texture* texture : textures_of(scene))
+        if (const auto* image = std::get_if<ImageTexture>(&texture->pattern)) indices.emplace(image->file, 0);
+    std::int32_t next = 0;
+    for (auto& [file, index] : indices) index = next++;
+    return indices;
+}
+
+void copy(const glm::vec3& from, float (&to)[3]) {
+    for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
+}
+
+// The axes of the surface coordinates of a plane (spec 4.6). For the six normals along an axis they are the spec's;
+// for others those of the nearest axis, turned by the least rotation that takes the axis to the normal.
+void set_plane_axes(const glm::dvec3& normal, PlaneRecord& record) {
+    int axis = 0;
+    for (int other = 1; other < 3; ++other)
+        if (std::abs(normal[other]) > std::abs(normal[axis])) axis = other;
+    glm::dvec3 nearest(0);
+    nearest[axis] = std::copysign(1.0, normal[axis]);
+
+    const auto or_else = [](const glm::dvec3& v, const glm::dvec3& instead) {
+        return v == glm::dvec3(0) ? instead : v;
+    };
+    const glm::dvec3 instead(-nearest.z, 0, nearest.x);
+    const glm::dvec3 u = or_else({-nearest.y, nearest.x, 0}, instead), v = or_else({0, -nearest.z, nearest.y}, instead);
+    // The rotation that takes the unit vector e to n takes a vector w across e to w - (w.n) / (1 + e.n) (e + n).
+    const auto turned = [&](const glm::dvec3& w) {
+        return w - (nearest + normal) * (glm::dot(w, normal) / (1 + glm::dot(nearest, normal)));
+    };
+    copy(turned(u), record.u_axis);
+    copy(turned(v), record.v_axis);
+}
+
+void compile_planes(const Scene& scene, SurfaceTable& surfaces, CompiledScene& compiled) {
+    for (const Plane& plane : scene.planes) {
+        PlaneRecord record{};
+        copy(plane.normal, record.normal);
+        record.offset = limited(plane.offset);
+        record.surface = surfaces.index_of(plane.texture);
+        set_plane_axes(plane.normal, record);
+        compiled.planes.push_back(record);
+    }
+    compiled.plane_count = static_cast<std::int32_t>(compiled.planes.size());
+}
+
+void compile_spheres(const Scene& scene, SurfaceTable& surfaces, CompiledScene& compiled,
+                     std::vector<SphereShape>& shapes) {
+    for (const Sphere& sphere : scene.spheres) {
+        SphereRecord record{};
+        copy(limited(sphere.center), record.center);
+        record.radius = limited(sphere.radius);
+        record.refraction_index = static_cast<float>(sphere.refraction_index);
+        record.surface = surfaces.index_of(sphere.texture);
+        compiled.spheres.push_back(record);
+        shapes.push_back({.center = limited(sphere.center), .radius = record.radius});
+    }
+    compiled.sphere_count = static_cast<std::int32_t>(compiled.spheres.size());
+}
+
+// Where the triangles of one mesh go.
+struct MeshSpan {
+    const Mesh* mesh;
+    const TriangleMesh* triangles;
+    std::size_t first;
+};
+
+void compile_mesh(const MeshSpan& span, std::int32_t surface, CompiledScene& compiled,
+                  std::vector<TriangleCorners>& corners) {
+    const std::vector<glm::vec3> positions = placed_positions(*span.triangles, span.mesh->center, span.mesh->radius);
+    const auto& faces = span.triangles->faces;
+#pragma omp parallel for schedule(static)
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        TriangleCorners& triangle = corners[span.first + f];
+        for (std::size_t corner = 0; corner < 3; ++corner) triangle.p[corner] = positions[faces[f][corner]];
+        TriangleRecord& record = compiled.triangles[span.first + f];
+        copy(geometric_normal(triangle), record.normal);
+        record.surface = surface;
+    }
+    if (!span.mesh->smooth) return;
+    const std::vector<VertexNormals> normals = corner_normals(*span.triangles);
+    std::copy(normals.begin(), normals.end(),
+              compiled.vertex_normals.begin() + static_cast<std::ptrdiff_t>(span.first));
+}
+
+// Smooth meshes, flat meshes, faces: in this order, so that the smooth triangles are the first.
+void compile_triangles(const Scene& scene, const std::map<std::filesystem::path, TriangleMesh>& files,
+                       SurfaceTable& surfaces, CompiledScene& compiled, std::vector<TriangleCorners>& corners) {
+    std::vector<MeshSpan> spans;
+    std::size_t count = 0, smooth_count = 0;
+    for (const bool smooth : {true, false}) {
+        for (const Mesh& mesh : scene.meshes) {
+            if (mesh.smooth != smooth) continue;
+            const TriangleMesh& file = files.at(mesh.file);
+            spans.push_back({&mesh, &file, count});
+            count += file.faces.size();
+        }
+        if (smooth) smooth_count = count;
+    }
+    compiled.smooth_count = static_cast<std::int32_t>(smooth_count);
+    compiled.triangle_count = static_cast<std::int32_t>(count + scene.faces.size());
+    compiled.vertex_normals.resize(smooth_count);
+    compiled.triangles.resize(count + scene.faces.size());
+    corners.resize(count + scene.faces.size());
+
+    for (const MeshSpan& span : spans) compile_mesh(span, surfaces.index_of(span.mesh->texture), compiled, corners);
+    for (std::size_t f = 0; f < scene.faces.size(); ++f) {
+        const Face& face = scene.faces[f];
+        TriangleCorners& triangle = corners[count + f];
+        triangle = {{limited(face.a), limited(face.b), limited(face.c)}};
+        copy(geometric_normal(triangle), compiled.triangles[count + f].normal);
+        compiled.triangles[count + f].surface = surfaces.index_of(face.texture);
+    }
+}
+
+// Radiance that sums of many samples can hold in single precision.
+constexpr double radiance_limit = 1e18;
+
+void compile_light(const Light& light, CompiledScene& compiled) {
+    const int n = light.area ? light.area->n : 1;
+    const double radius = light.area ? light.area->radius : 0;
+    const double intensity = light.intensity / (static_cast<double>(n) * n);
+    const auto first = static_cast<std::uint32_t>(compiled.light_points.size());
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double a = 2 * std::numbers::pi * i / n, b = 2 * std::numbers::pi * j / n;
+            const glm::dvec3 offset(std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b));
+            LightPoint point{};
+            copy(limited(light.origin + radius * offset), point.position);
+            for (int channel = 0; channel < 3; ++channel)
+                point.radiance[channel] =
+                    static_cast<float>(std::clamp(light.color[channel] * intensity, -radiance_limit, radiance_limit));
+            compiled.light_points.push_back(point);
+        }
+    compiled.light_groups.push_back({first, static_cast<std::uint32_t>(n) * static_cast<std::uint32_t>(n)});
+}
+
+void compile_lights(const Scene& scene, const Limits& limits, CompiledScene& compiled) {
+    std::uint64_t points = 0;
+    for (const Light& light : scene.lights) {
+        const auto n = static_cast<std::uint64_t>(light.area ? light.area->n : 1);
+        points += n * n;
+        if (points <= limits.light_points) continue;
+        throw InputError(Diagnostic{.where = {.file = scene.file.string()},
+                                    .what = "the lights of this scene are more than " +
+                                            std::to_string(limits.light_points) + " points (area n counts n x n)",
+                                    .expected = "--max-light-points raises the limit",
+                                    .source_line = {}});
+    }
+    for (const Light& light : scene.lights) compile_light(light, compiled);
+}
+
+void compile_images(const Scene& scene, const std::map<std::filesystem::path, Image>& files, CompiledScene& compiled) {
+    std::uint64_t texels = 0;
+    for (const auto& [file, image] : files) texels += image.texels.size();
+    // Texels are gathered by signed 32-bit indices.
+    if (texels > std::numeric_limits<std::int32_t>::max())
+        throw InputError(Diagnostic{.where = {.file = scene.file.string()},
+                                    .what = "the images of this scene have " + std::to_string(texels) +
+                                            " pixels together, more than 2147483647",
+                                    .expected = "use smaller images",
+                                    .source_line = {}});
+    compiled.texels.reserve(texels);
+    for (const auto& [file, image] : files) {
+        compiled.images.push_back({static_cast<std::uint32_t>(compiled.texels.size()), image.width, image.height});
+        compiled.texels.insert(compiled.texels.end(), image.texels.begin(), image.texels.end());
+    }
+    // Gathers of lanes without an image read the first texel of the first one.
+    if (compiled.images.empty()) compiled.images.emplace_back();
+    if (compiled.texels.empty()) compiled.texels.push_back(0);
+}
+
+}  // namespace
+
+CompiledScene compile(const Scene& scene, const CompileOptions& options, const Limits& limits,
+                      std::vector<Diagnostic>& warnings, CompileStatistics* statistics) {
+    const Stopwatch watch;
+    // Images are decoded while meshes are read and the tree is built.
+    auto images_to_come = std::async(std::launch::async, [&] { return read_images(scene, limits); });
+    CompiledScene compiled;
+    compile_lights(scene, limits, compiled);
+
+    SceneFiles<TriangleMesh> meshes = read_meshes(scene, limits);
+    warnings.insert(warnings.end(), meshes.warnings.begin(), meshes.warnings.end());
+    BuildStatistics build;
+    if (meshes.errors.empty()) {
+        SurfaceTable surfaces(image_indices(scene));
+        std::vector<TriangleCorners> corners;
+        std::vector<SphereShape> spheres;
+        compile_triangles(scene, meshes.files, surfaces, compiled, corners);
+        meshes.files.clear();
+        compile_spheres(scene, surfaces, compiled, spheres);
+        compile_planes(scene, surfaces, compiled);
+        compiled.surfaces = std::move(surfaces.records);
+        if (compiled.surfaces.empty()) compiled.surfaces.push_back(SurfaceRecord{});  // gathers read the first
+        const Shapes shapes{.triangles = corners, .spheres = spheres};
+        compiled.hierarchy = options.accelerator == Accelerator::kdtree ? build_kd_tree(shapes, options.kd, &build)
+                                                                        : build_bvh(shapes, &build);
+    }
+
+    const SceneFiles<Image> images = images_to_come.get();
+    warnings.insert(warnings.end(), images.warnings.begin(), images.warnings.end());
+    std::vector<Diagnostic> errors = std::move(meshes.errors);
+    errors.insert(errors.end(), images.errors.begin(), images.errors.end());
+    if (!errors.empty()) throw InputError(std::move(errors));
+    compile_images(scene, images.files, compiled);
+
+    if (statistics != nullptr)
+        *statistics = {.mesh_seconds = meshes.seconds,
+                       .image_seconds = images.seconds,
+                       .total_seconds = watch.seconds(),
+                       .build = build};
+    return compiled;
+}
+
+}  // namespace raywalk

@@ -1,0 +1,96 @@
+#include "tracer/compiled/mesh_placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace raywalk {
+
+float limited(double coordinate) {
+    return static_cast<float>(std::clamp(coordinate, -coordinate_limit, coordinate_limit));
+}
+glm::vec3 limited(const glm::dvec3& point) { return {limited(point.x), limited(point.y), limited(point.z)}; }
+
+namespace {
+
+// The unit vector along v, or zero where v has no direction.
+glm::dvec3 direction_of(const glm::dvec3& v) {
+    // Scaled first, so that the square of a tiny or huge component neither vanishes nor overflows.
+    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    if (!(largest > 0) || std::isinf(largest)) return glm::dvec3(0);
+    return glm::normalize(v / largest);
+}
+
+glm::dvec3 face_direction(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return direction_of(glm::cross(b - a, c - a));
+}
+
+glm::dvec3 vertex_mean(const TriangleMesh& mesh) {
+    glm::dvec3 sum(0);
+    for (const glm::vec3& p : mesh.positions) sum += glm::dvec3(p);
+    return sum / static_cast<double>(mesh.positions.size());
+}
+
+double farthest_from(const TriangleMesh& mesh, const glm::dvec3& point) {
+    double farthest = 0;
+    for (const glm::vec3& p : mesh.positions) farthest = std::max(farthest, glm::length(glm::dvec3(p) - point));
+    return farthest;
+}
+
+}  // namespace
+
+std::string placement_problem(const TriangleMesh& mesh) {
+    if (mesh.positions.empty()) return "it has no vertices";
+    if (mesh.faces.empty()) return "it has no faces";
+    const auto same = [&](const glm::vec3& p) { return p == mesh.positions.front(); };
+    if (std::all_of(mesh.positions.begin(), mesh.positions.end(), same)) return "all its vertices are one point";
+    return {};
+}
+
+std::vector<glm::vec3> placed_positions(const TriangleMesh& mesh, const glm::dvec3& center, double radius) {
+    const glm::dvec3 mean = vertex_mean(mesh);
+    const double scale = radius / farthest_from(mesh, mean);
+    std::vector<glm::vec3> placed(mesh.positions.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t i = 0; i < placed.size(); ++i)
+        placed[i] = limited(center + (glm::dvec3(mesh.positions[i]) - mean) * scale);
+    return placed;
+}
+
+std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh) {
+    const std::size_t faces = mesh.faces.size();
+    std::vector<glm::dvec3> face_normals(faces);
+#pragma omp parallel for schedule(static)
+    for (std::size_t f = 0; f < faces; ++f) {
+        const auto& [a, b, c] = mesh.faces[f];
+        face_normals[f] = face_direction(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+    }
+    // In the order of the faces, on one thread: the same sums for any number of threads.
+    std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
+    for (std::size_t f = 0; f < faces; ++f)
+        for (const std::uint32_t vertex : mesh.faces[f]) sums[vertex] += face_normals[f];
+
+    std::vector<VertexNormals> normals(faces);
+#pragma omp parallel for schedule(static)
+    for (std::size_t f = 0; f < faces; ++f)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            glm::dvec3 n(0);
+            if (!mesh.normal_faces.empty() && mesh.normal_faces[f][corner] >= 0)
+                n = direction_of(mesh.normals[static_cast<std::size_t>(mesh.normal_faces[f][corner])]);
+            // Opposite faces cancel but for rounding: such a mean has no direction worth the name.
+            if (n == glm::dvec3(0) && glm::length(sums[mesh.faces[f][corner]]) > 1e-9)
+                n = direction_of(sums[mesh.faces[f][corner]]);
+            if (n == glm::dvec3(0)) n = face_normals[f];
+            if (n == glm::dvec3(0)) n = {0, 0, 1};
+            for (int axis = 0; axis < 3; ++axis)
+                normals[f].n[3 * corner + static_cast<std::size_t>(axis)] = static_cast<float>(n[axis]);
+        }
+    return normals;
+}
+
+glm::vec3 geometric_normal(const TriangleCorners& triangle) {
+    const glm::dvec3 n = face_direction(triangle.p[0], triangle.p[1], triangle.p[2]);
+    return n == glm::dvec3(0) ? glm::vec3(0, 0, 1) : glm::vec3(n);
+}
+
+}  // namespace raywalk

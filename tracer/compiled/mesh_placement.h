@@ -1,0 +1,34 @@
+// From a mesh as its file has it to triangles where the scene wants them (spec 3, Mesh).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tracer/compiled/compiled_scene.h"
+#include "tracer/compiled/hierarchy.h"
+#include "tracer/description/obj_reader.h"
+#include "tracer/description/scene.h"
+
+namespace raywalk {
+
+// Coordinates and radii are brought to at most this in magnitude: products of three of them (Moeller-Trumbore) then
+// stay finite in single precision, and nothing so far away can be seen (exp(-0.02 * 1e12) is 0).
+inline constexpr double coordinate_limit = 1e12;
+float limited(double coordinate);
+glm::vec3 limited(const glm::dvec3& point);
+
+// Why the mesh cannot be placed ("it has no faces"), or nothing.
+std::string placement_problem(const TriangleMesh& mesh);
+
+// The mesh's vertices, their mean moved to `center`, the farthest scaled to `radius` from it. Computed in double.
+// placement_problem() must be empty.
+std::vector<glm::vec3> placed_positions(const TriangleMesh& mesh, const glm::dvec3& center, double radius);
+
+// Unit normals of each face's three corners: the file's own where it has them, else the unweighted mean of the unit
+// normals of the faces around the vertex, else (a mean of zero) the face's own.
+std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh);
+
+// Unit normal by the order a, b, c; some unit vector for a triangle without area, which no ray hits.
+glm::vec3 geometric_normal(const TriangleCorners& triangle);
+
+}  // namespace raywalk

@@ -1,0 +1,109 @@
+#include "tracer/rendering/renderer.h"
+
+#include <omp.h>
+
+#include <algorithm>
+
+namespace raywalk {
+
+namespace {
+
+// Samples that one visit to a tile makes, between looks at `cancel`.
+constexpr std::uint32_t samples_per_visit = 4;
+
+}  // namespace
+
+Renderer::Renderer(const CompiledScene& scene, const Kernels* kernels, int threads)
+    : scene_(&scene),
+      kernels_(kernels != nullptr ? kernels : select_kernels()),
+      threads_(threads > 0 ? threads : omp_get_max_threads()) {
+    for (int i = 0; i < threads_; ++i) scratch_.push_back(make_tile_scratch());
+}
+
+void Renderer::set_view(const View& view) {
+    if (view == view_) return;
+    if (view.width != film_.width || view.height != film_.height)
+        film_.resize(view.width, view.height);
+    else
+        film_.clear();
+    view_ = view;
+    samples_ = 0;
+    counts_ = {};
+}
+
+bool Renderer::render_until(std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
+                            const std::function<void(int)>& tile_done) {
+    const int tiles = static_cast<int>(film_.tiles.size());
+    RayCounts counts;
+    bool cancelled = false;
+
+#pragma omp parallel num_threads(threads_)
+    {
+        TileScratch& scratch = *scratch_[static_cast<std::size_t>(omp_get_thread_num())];
+        RayCounts own_counts;
+        bool own_cancelled = false;
+#pragma omp for schedule(dynamic) nowait
+        for (int tile = 0; tile < tiles; ++tile) {
+            // A pixel's samples are added in the order 0, 1, 2, ... whatever the visits and threads: same sums, bit
+            // for bit.
+            std::uint32_t& done = film_.samples[static_cast<std::size_t>(tile)];
+            while (done < samples_per_pixel) {
+                if (cancel.load(std::memory_order_relaxed)) {
+                    own_cancelled = true;
+                    break;
+                }
+                FilmTile& sums = film_.tiles[static_cast<std::size_t>(tile)];
+                if (done == 0) sums = {};
+                const TileJob job{.scene = scene_,
+                                  .camera = &view_.camera,
+                                  .settings = view_.settings,
+                                  .width = view_.width,
+                                  .height = view_.height,
+                                  .x = tile % film_.tiles_x * tile_size,
+                                  .y = tile / film_.tiles_x * tile_size,
+                                  .first_sample = done,
+                                  .sample_count = std::min(samples_per_pixel - done, samples_per_visit)};
+                kernels_->trace_tile(job, scratch, sums, own_counts);
+                done += job.sample_count;
+                if (done >= samples_per_pixel && tile_done) tile_done(tile);
+            }
+        }
+#pragma omp critical
+        {
+            counts += own_counts;
+            cancelled |= own_cancelled;
+        }
+    }
+
+    counts_ += counts;
+    samples_ =
+        film_.samples.empty() ? samples_per_pixel : *std::min_element(film_.samples.begin(), film_.samples.end());
+    return !cancelled;
+}
+
+std::vector<std::uint8_t> display_values(const Film& film, const Kernels& kernels, float exposure) {
+    const auto width = static_cast<std::size_t>(film.width);
+    std::vector<std::uint8_t> bytes(width * static_cast<std::size_t>(film.height) * 3);
+#pragma omp parallel for schedule(static)
+    for (int tile = 0; tile < static_cast<int>(film.tiles.size()); ++tile) {
+        const std::uint32_t samples = film.samples[static_cast<std::size_t>(tile)];
+        if (samples == 0) continue;
+        const int x = tile % film.tiles_x * tile_size, y = tile / film.tiles_x * tile_size;
+        const int columns = std::min(tile_size, film.width - x), rows = std::min(tile_size, film.height - y);
+        std::uint32_t words[tile_pixels];
+        kernels.resolve_tile(film.tiles[static_cast<std::size_t>(tile)], film_scale(exposure, samples), columns, rows,
+                             words, tile_size);
+        for (int row = 0; row < rows; ++row)
+            for (int column = 0; column < columns; ++column) {
+                const std::uint32_t word = words[row * tile_size + column];
+                std::uint8_t* pixel =
+                    &bytes[(static_cast<std::size_t>(y + row) * width + static_cast<std::size_t>(x + column)) * 3];
+                pixel[0] = static_cast<std::uint8_t>(word >> 16);
+                pixel[1] = static_cast<std::uint8_t>(word >> 8);
+                pixel[2] = static_cast<std::uint8_t>(word);
+            }
+    }
+    return bytes;
+}
+
+}  // namespace raywalk
