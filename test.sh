@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# ./test.sh [--full]: builds Raywalk and its tests, installing what is missing, and runs them.
+#   (nothing)   the quick suite: a few minutes on two cores, the build not counted
+#   --full      everything: format, lint, warnings as errors, the long tests, the suite under sanitizers, fuzzing
+# Ends with one line per stage and their count; the exit code is 0 where nothing failed.
+set -uo pipefail
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
+source "$root/tools/prepare.sh"
+
+full=no
+case "${1:-}" in
+    "") ;;
+    --full) full=yes ;;
+    *) sed -n '2,5s/^# //p' "$root/test.sh"; [[ $1 == --help || $1 == -h ]] && exit 0; exit 2 ;;
+esac
+
+jobs=$(nproc)
+results=()
+failed=0
+
+# stage NAME COMMAND...: runs the command with nothing on stdin, and remembers how it went and how long it took.
+stage() {
+    local name=$1 begin=$SECONDS outcome=passed
+    shift
+    say "== $name"
+    "$@" </dev/null || { outcome=FAILED; failed=$((failed + 1)); }
+    results+=("$(printf '%-7s %5d s  %s' "$outcome" $((SECONDS - begin)) "$name")")
+}
+
+suite() {  # suite PRESET [CTEST OPTIONS...]
+    local preset=$1
+    shift
+    ctest --test-dir "$root/build/$preset" --output-on-failure --no-tests=error -j "$jobs" "$@"
+}
+
+build_with_tests() { configure "$1" RAYWALK_TESTS=ON && build "$1"; }
+
+sources() { git -C "$root" ls-files -z -- '*.h' '*.cpp' '*.inl'; }
+check_format() { (cd "$root" && sources | xargs -0 -r clang-format --dry-run --Werror); }
+lint() {  # the compilation database of the release preset, our own files only
+    (cd "$root" && sources | grep -z '\.cpp$' |
+        xargs -0 -r -n 4 -P "$jobs" clang-tidy -p build/release --quiet --warnings-as-errors='*')
+}
+
+packages=("${build_packages[@]}" "${test_packages[@]}" $(vulkan_driver_package))
+[[ $full == yes ]] && packages+=("${full_test_packages[@]}")
+need_packages "${packages[@]}" || exit 1
+provide_runtime_folder
+
+stage "build" build_with_tests release
+if [[ $failed -eq 0 ]]; then
+    if [[ $full == no ]]; then
+        stage "quick suite" suite release -LE long
+    else
+        stage "format" check_format
+        stage "whole suite" suite release
+        stage "warnings as errors" build_with_tests dev
+        stage "build with sanitizers" build_with_tests asan
+        stage "quick suite under address and undefined-behaviour sanitizers" suite asan -LE long
+        stage "lint" lint
+    fi
+fi
+
+printf '\n'
+printf '%s\n' "${results[@]}"
+printf '%d passed, %d failed\n' $((${#results[@]} - failed)) "$failed"
+[[ $failed -eq 0 ]]
