@@ -39,9 +39,11 @@ struct KdNode {
 // Blocks [first, first + count) of each kind.
 struct KdLeaf {
     std::uint32_t first_triangle_block = 0, first_sphere_block = 0;
-    std::uint16_t triangle_blocks = 0, sphere_blocks = 0;
+    std::uint32_t triangle_blocks = 0, sphere_blocks = 0;
 };
 
+// A shape is in every leaf whose cell it enters. One that only touches the plane between two cells, with its whole self
+// or with an edge, may be in one of the two: a ray that runs in a split plane has to visit both sides.
 struct KdTree {
     AlignedVector<KdNode> nodes;  // nodes[0] is the root; never empty
     AlignedVector<KdLeaf> leaves;

@@ -1,0 +1,43 @@
+// Writes shapes into the lanes of leaf blocks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "tracer/compiled/hierarchy.h"
+
+namespace raywalk {
+
+inline std::uint32_t blocks_for(std::size_t shapes) {
+    return static_cast<std::uint32_t>((shapes + block_width - 1) / block_width);
+}
+
+// Fills blocks_for(ids.size()) blocks from `blocks` on with the triangles ids[i]; empty lanes are cleared.
+inline void fill_blocks(TriangleBlock* blocks, std::span<const std::uint32_t> ids,
+                        std::span<const TriangleCorners> triangles) {
+    if (ids.size() % block_width != 0) clear(blocks[ids.size() / block_width]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        TriangleBlock& block = blocks[i / block_width];
+        const std::size_t lane = i % block_width;
+        const TriangleCorners& triangle = triangles[ids[i]];
+        for (int corner = 0; corner < 3; ++corner)
+            for (int axis = 0; axis < 3; ++axis) block.corner[corner][axis][lane] = triangle.p[corner][axis];
+        block.id[lane] = static_cast<std::int32_t>(ids[i]);
+    }
+}
+
+// The same for spheres; `ids` count from `first_id`.
+inline void fill_blocks(SphereBlock* blocks, std::span<const std::uint32_t> ids, std::span<const SphereShape> spheres,
+                        std::uint32_t first_id) {
+    if (ids.size() % block_width != 0) clear(blocks[ids.size() / block_width]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        SphereBlock& block = blocks[i / block_width];
+        const std::size_t lane = i % block_width;
+        const SphereShape& sphere = spheres[ids[i] - first_id];
+        for (int axis = 0; axis < 3; ++axis) block.center[axis][lane] = sphere.center[axis];
+        block.radius[lane] = sphere.radius;
+        block.id[lane] = static_cast<std::int32_t>(ids[i] - first_id);
+    }
+}
+
+}  // namespace raywalk

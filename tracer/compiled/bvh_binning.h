@@ -1,0 +1,50 @@
+// Binary BVH over one kind of shape: binned surface-area heuristic over centroids, primitives sorted in place.
+// Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tracer/ground/aligned.h"
+#include "tracer/ground/bounds.h"
+
+namespace raywalk::bvh {
+
+// A shape's box and index, in two vector registers.
+struct alignas(32) Primitive {
+    float lower[3];
+    std::uint32_t tagged_id;  // with a bit that makes it a normal number in vector arithmetic: denormals are slow
+    float upper[3];
+    std::uint32_t padding = 0;
+
+    static constexpr std::uint32_t tag = 0x40000000u;
+    [[nodiscard]] std::uint32_t id() const { return tagged_id & ~tag; }
+};
+
+// Primitives [begin, end) and their box; split at `middle`, or a leaf where that is 0.
+struct Range {
+    std::uint32_t begin = 0, end = 0, middle = 0;
+    Bounds box;
+    [[nodiscard]] std::uint32_t size() const { return end - begin; }
+    [[nodiscard]] bool leaf() const { return middle == 0; }
+};
+
+// The children of a split range.
+struct Halves {
+    Range lower, upper;
+};
+
+// The split of a range lies at its middle: no two ranges share one, so tasks write without asking each other.
+struct BinaryTree {
+    AlignedVector<Primitive> primitives;
+    std::vector<Halves> split_at;  // by middle
+    Range root;
+    std::uint64_t binned = 0;  // primitives binned and moved, over all ranges
+};
+
+inline constexpr std::uint32_t largest_leaf = 8 * 16;  // of shapes whose centroids coincide; else one block of 16
+
+// Boxes of the shapes that are to be sorted; called inside or outside a parallel region.
+BinaryTree build_binary(AlignedVector<Primitive> primitives);
+
+}  // namespace raywalk::bvh
