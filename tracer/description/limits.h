@@ -3,19 +3,53 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace raywalk {
 
 struct Limits {
-    std::uint64_t scene_bytes = 64ull << 20;       // a scene file
-    std::uint64_t mesh_bytes = 4ull << 30;         // an OBJ file
-    std::uint64_t triangles = 100'000'000;         // of all meshes together, after triangulation
-    std::uint64_t light_points = 65'536;           // of all lights together: area n counts n * n
-    std::uint64_t samples = 65'536;                // per pixel: dop count x anti count
-    std::uint64_t image_pixels = 64ull << 20;      // of one texture
-    std::uint64_t errors = 20;                     // reported before giving up
+    std::uint64_t scene_bytes = 64ull << 20;     // a scene file
+    std::uint64_t mesh_bytes = 4ull << 30;       // an OBJ file
+    std::uint64_t triangles = 100'000'000;       // of all meshes together, after triangulation
+    std::uint64_t light_points = 65'536;         // of all lights together: area n counts n * n
+    std::uint64_t samples = 65'536;              // per pixel: dop count x anti count
+    std::uint64_t image_bytes = 1ull << 30;      // an image file
+    std::uint64_t image_pixels = 64ull << 20;    // of one texture
+    std::uint64_t image_pixels_per_byte = 2048;  // a small file that promises more is no picture (see read_image)
+    std::uint64_t errors = 20;                   // reported before giving up
     std::vector<std::filesystem::path> allowed_folders;  // beside the parent of the scene's folder
 };
+
+// The command-line option that raises a limit.
+struct LimitOption {
+    std::string_view name;  // "--max-triangles"
+    std::uint64_t Limits::*value;
+    std::string_view meaning;
+};
+
+inline constexpr LimitOption limit_options[] = {
+    {"--max-scene-bytes", &Limits::scene_bytes, "bytes of a scene file"},
+    {"--max-mesh-bytes", &Limits::mesh_bytes, "bytes of an OBJ file"},
+    {"--max-triangles", &Limits::triangles, "triangles of all meshes together"},
+    {"--max-light-points", &Limits::light_points, "points of all lights together (area n is n x n of them)"},
+    {"--max-samples", &Limits::samples, "samples per pixel (dop count x anti count)"},
+    {"--max-image-bytes", &Limits::image_bytes, "bytes of an image file"},
+    {"--max-image-pixels", &Limits::image_pixels, "pixels of one texture"},
+    {"--max-image-pixels-per-byte", &Limits::image_pixels_per_byte,
+     "pixels that one byte of an image file may promise"},
+    {"--max-errors", &Limits::errors, "mistakes reported before giving up"},
+};
+
+// "raise the limit of 64 with --max-NAME N", for the error of a broken budget.
+std::string how_to_raise(const Limits& limits, std::uint64_t Limits::*value);
+
+// Numbers of a scene. Products of three lengths must be finite in single precision, which ends at 3.4e38: coordinates
+// differ by at most 2e12 then, and the determinant of three edges stays below 6 * 8e36.
+inline constexpr double largest_length = 1e12;
+// Lengths that must not vanish (radii, distances): their squares are normal in single precision.
+inline constexpr double smallest_length = 1e-12;
+inline constexpr int largest_picture = 16'384;  // pixels on a side
 
 }  // namespace raywalk

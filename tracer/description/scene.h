@@ -22,10 +22,8 @@ struct Material {
 };
 
 inline constexpr Material materials[] = {
-    {"FLOOR", 0, 0.1, 5, 0, 0},
-    {"MIRROR", 0, 0.2, 5, 1.0, 0},
-    {"A_BIT_MIRROR", 0, 0.2, 5, 0.3, 0},
-    {"TRANSPARENT_MATERIAL", 0, 0, 0, 0, 1.0},
+    {"FLOOR", 0, 0.1, 5, 0, 0},          {"MIRROR", 0, 0.2, 5, 1.0, 0},
+    {"A_BIT_MIRROR", 0, 0.2, 5, 0.3, 0}, {"TRANSPARENT_MATERIAL", 0, 0, 0, 0, 1.0},
     {"PLASTIC", 0.05, 0.2, 5, 0, 0},
 };
 

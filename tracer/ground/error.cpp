@@ -2,34 +2,100 @@
 
 #include <algorithm>
 
+#include "tracer/ground/utf8.h"
+
 namespace raywalk {
 
+namespace {
+
+constexpr std::size_t shown_bytes = 100;  // of a long line
+constexpr std::size_t shown_word = 40;    // bytes of a long word
+
+// True at the first byte of a UTF-8 character.
+bool starts_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
+
+// What stands under `text` up to the caret: tabs under tabs, one blank under each other character.
+std::string margin_under(std::string_view text) {
+    std::string margin;
+    for (const char c : text)
+        if (c == '\t' || starts_character(c)) margin += c == '\t' ? '\t' : ' ';
+    return margin;
+}
+
+std::size_t characters(std::string_view text) { return std::ranges::count_if(text, starts_character); }
+
+// `where` as the line below the message shows it: the line, and a caret with waves under the place.
+std::string caret_lines(const Diagnostic& d) {
+    const std::string line = printable(d.source_line);
+    const std::size_t column = std::max<std::size_t>(d.where.column, 1) - 1;
+    const std::size_t start = std::min(column - std::min(d.skipped, column), line.size());
+    const std::string_view under = std::string_view(line).substr(start, d.where.length);
+    const std::string before = d.skipped > 0 ? "..." : "";
+    return "\n  " + before + line + "\n  " + std::string(before.size(), ' ') +
+           margin_under(std::string_view(line).substr(0, start)) + "^" +
+           std::string(std::max<std::size_t>(characters(under), 1) - 1, '~');
+}
+
+std::string joined(const std::vector<Diagnostic>& diagnostics) {
+    std::string text;
+    for (const Diagnostic& d : diagnostics) text += (text.empty() ? "" : "\n") + to_string(d);
+    return text;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const auto byte = static_cast<unsigned char>(text[0]);
+        const std::size_t length = utf8_length(text);
+        const bool control = (byte < 0x20 && byte != '\t') || byte == 0x7F ||
+                             (byte == 0xC2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xA0);
+        if (length == 0 || control)
+            result += '?';
+        else
+            result += text.substr(0, length);
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return result;
+}
+
+std::string quoted(std::string_view word) {
+    if (word.size() <= shown_word) return "'" + printable(word) + "'";
+    std::size_t end = shown_word - 3;
+    while (end > 0 && !starts_character(word[end])) --end;
+    return "'" + printable(word.substr(0, end)) + "...'";
+}
+
+void quote_line(Diagnostic& diagnostic, std::string_view line) {
+    std::size_t begin = 0, end = line.size();
+    if (line.size() > shown_bytes) {
+        const std::size_t place = std::min(std::max<std::size_t>(diagnostic.where.column, 1) - 1, line.size());
+        if (place > shown_bytes / 2) begin = place - shown_bytes / 2;
+        end = std::min(line.size(), begin + shown_bytes);
+        while (begin > 0 && begin < place && !starts_character(line[begin])) ++begin;
+        while (end > place && end < line.size() && !starts_character(line[end])) --end;
+    }
+    diagnostic.skipped = begin;
+    diagnostic.source_line = line.substr(begin, end - begin);
+    if (end < line.size()) diagnostic.source_line += "...";
+}
+
 std::string to_string(const Diagnostic& diagnostic) {
-    std::string text = diagnostic.where.file;
+    std::string text = printable(diagnostic.where.file);
     if (diagnostic.where.line > 0)
         text += ":" + std::to_string(diagnostic.where.line) + ":" + std::to_string(diagnostic.where.column);
     text += diagnostic.severity == Severity::error ? ": error: " : ": warning: ";
     text += diagnostic.what;
     if (!diagnostic.source_line.empty()) {
-        // Tabs stay tabs under tabs, so that the caret stands where it belongs.
-        std::string margin = diagnostic.source_line.substr(0, diagnostic.where.column - 1);
-        std::replace_if(margin.begin(), margin.end(), [](char c) { return c != '\t'; }, ' ');
-        text += "\n  " + diagnostic.source_line + "\n  " + margin + "^" +
-                std::string(std::max<std::size_t>(diagnostic.where.length, 1) - 1, '~');
+        text += caret_lines(diagnostic);
         if (!diagnostic.expected.empty()) text += " " + diagnostic.expected;
     } else if (!diagnostic.expected.empty()) {
         text += "\n  " + diagnostic.expected;
     }
     return text;
 }
-
-namespace {
-std::string joined(const std::vector<Diagnostic>& diagnostics) {
-    std::string text;
-    for (const Diagnostic& d : diagnostics) text += (text.empty() ? "" : "\n") + to_string(d);
-    return text;
-}
-}  // namespace
 
 InputError::InputError(std::vector<Diagnostic> diagnostics)
     : std::runtime_error(joined(diagnostics)), diagnostics_(std::move(diagnostics)) {}

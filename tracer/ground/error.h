@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace raywalk {
 
 // A place in a text file. Lines and columns count from 1 (columns in bytes); 0 means "the file as a whole".
 struct SourceLocation {
-    std::string file;
+    std::string file = {};
     std::size_t line = 0;
     std::size_t column = 0;
     std::size_t length = 1;  // bytes under the caret
@@ -20,15 +21,26 @@ struct SourceLocation {
 
 enum class Severity { warning, error };
 
-// One message about one place. `source_line` is the offending line as written (empty when there is none).
+// One message about one place. `source_line` is the offending line as written, or the part of a long line around the
+// place (empty when there is none): set it with quote_line.
 struct Diagnostic {
     Severity severity = Severity::error;
-    SourceLocation where;
-    std::string what;      // "unknown property 'cente'"
-    std::string expected;  // "did you mean 'center'?" or what would be right; may be empty
-    std::string source_line;
+    SourceLocation where = {};
+    std::string what = {};      // "unknown property 'cente'"
+    std::string expected = {};  // "did you mean 'center'?" or what would be right; may be empty
+    std::string source_line = {};
+    std::size_t skipped = 0;  // bytes of the line left out before source_line, when the line is long
     friend bool operator==(const Diagnostic&, const Diagnostic&) = default;
 };
+
+// Keeps of `line`, which diagnostic.where points into, what a message shows: at most about 100 bytes around the place.
+void quote_line(Diagnostic& diagnostic, std::string_view line);
+
+// 'word' for a message: cut when long, and safe to print on a terminal (see printable).
+std::string quoted(std::string_view word);
+
+// `text` with each control character but tab, and each byte that is not UTF-8, replaced by '?'.
+std::string printable(std::string_view text);
 
 // file:line:column: error: what
 //   the line

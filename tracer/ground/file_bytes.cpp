@@ -1,0 +1,126 @@
+#include "tracer/ground/file_bytes.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <system_error>
+#include <utility>
+
+namespace raywalk {
+
+namespace {
+
+constexpr std::size_t piece = std::size_t{4} << 20;  // bytes that one thread reads at a time
+
+// A file descriptor that closes itself.
+class Descriptor {
+  public:
+    explicit Descriptor(int fd) : fd_(fd) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() {
+        if (fd_ >= 0) close(fd_);
+    }
+    [[nodiscard]] int get() const { return fd_; }
+
+  private:
+    int fd_;
+};
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+// What kind of thing `mode` says it is, when it is no regular file.
+std::string kind_problem(mode_t mode) {
+    if (S_ISREG(mode)) return {};
+    if (S_ISDIR(mode)) return "is a folder";
+    if (S_ISFIFO(mode)) return "is a pipe, not a regular file";
+    if (S_ISSOCK(mode)) return "is a socket, not a regular file";
+    return "is a device, not a regular file";
+}
+
+// Reads [begin, end) of the file; fewer bytes when it ends early. Returns the count, or -errno.
+long read_piece(int fd, char* into, std::size_t begin, std::size_t end) {
+    std::size_t done = begin;
+    while (done < end) {
+        const ssize_t n = pread(fd, into + done, end - done, static_cast<off_t>(done));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return -errno;
+        if (n == 0) break;
+        done += static_cast<std::size_t>(n);
+    }
+    return static_cast<long>(done - begin);
+}
+
+}  // namespace
+
+FileBytes::FileBytes(std::size_t size) : size_(size), mapped_(size + padding) {
+    void* memory = mmap(nullptr, mapped_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    data_ = static_cast<char*>(memory);
+    madvise(memory, mapped_, MADV_HUGEPAGE);  // fewer page faults; a refusal does not matter
+    std::memset(data_ + size, '\n', padding);
+}
+
+FileBytes::FileBytes(FileBytes&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)),
+      size_(std::exchange(other.size_, 0)),
+      mapped_(std::exchange(other.mapped_, 0)) {}
+
+FileBytes::~FileBytes() {
+    if (data_) munmap(data_, mapped_);
+}
+
+FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+    // Non-blocking: opening a pipe must not wait for a writer.
+    const Descriptor fd(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (fd.get() < 0) throw FileProblem("cannot be opened: " + reason(errno));
+    struct stat before {};
+    if (fstat(fd.get(), &before) != 0) throw FileProblem("cannot be examined: " + reason(errno));
+    if (std::string kind = kind_problem(before.st_mode); !kind.empty()) throw FileProblem(kind);
+    const auto size = static_cast<std::uint64_t>(before.st_size);
+    if (size > most_bytes) throw FileProblem("has " + std::to_string(size) + " bytes", true);
+
+    FileBytes bytes(size);
+    std::atomic<long> error{0};
+    std::atomic<bool> changed{false};
+    const auto pieces = static_cast<long>((size + piece - 1) / piece);
+#pragma omp parallel for schedule(dynamic) if (pieces > 1)
+    for (long i = 0; i < pieces; ++i) {
+        const std::size_t begin = static_cast<std::size_t>(i) * piece;
+        const std::size_t end = std::min<std::size_t>(begin + piece, size);
+        const long n = read_piece(fd.get(), bytes.data(), begin, end);
+        if (n < 0)
+            error = -n;
+        else if (static_cast<std::size_t>(n) < end - begin)
+            changed = true;
+    }
+    if (error != 0) throw FileProblem("cannot be read: " + reason(static_cast<int>(error)));
+    struct stat after {};
+    if (fstat(fd.get(), &after) != 0) throw FileProblem("cannot be examined: " + reason(errno));
+    const auto same_time = [](const timespec& a, const timespec& b) {
+        return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+    };
+    char more = 0;
+    const bool longer = pread(fd.get(), &more, 1, static_cast<off_t>(size)) > 0;
+    if (size == 0 && after.st_size == 0 && longer) throw FileProblem("is made up by the system, not a regular file");
+    if (changed || longer || after.st_size != before.st_size || !same_time(after.st_mtim, before.st_mtim))
+        throw FileProblem("changed while it was read; try again");
+    return bytes;
+}
+
+std::string file_problem(const std::filesystem::path& file) {
+    struct stat status {};
+    if (stat(file.c_str(), &status) != 0) return "cannot be opened: " + reason(errno);
+    if (std::string kind = kind_problem(status.st_mode); !kind.empty()) return kind;
+    if (access(file.c_str(), R_OK) != 0) return "cannot be opened: " + reason(errno);
+    return {};
+}
+
+}  // namespace raywalk

@@ -1,0 +1,47 @@
+// Whole files in memory, read with care: only regular files, only within a budget, never blocking.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace raywalk {
+
+// Bytes of a file. A copy rather than a mapping: a file that shrinks while it is mapped kills the reader (SIGBUS), and
+// the copy costs little beside parsing. `padding` newlines follow the text, so that scanners need no end test.
+class FileBytes {
+  public:
+    static constexpr std::size_t padding = 64;
+
+    explicit FileBytes(std::size_t size);
+    FileBytes(FileBytes&& other) noexcept;
+    FileBytes& operator=(FileBytes&&) = delete;
+    ~FileBytes();
+
+    [[nodiscard]] std::string_view text() const { return {data_, size_}; }
+    [[nodiscard]] char* data() { return data_; }
+
+  private:
+    char* data_ = nullptr;
+    std::size_t size_ = 0, mapped_ = 0;
+};
+
+// Why a file could not be read, as the end of a sentence: "is a folder", "cannot be opened: Permission denied". The
+// input's fault: callers place it and throw InputError.
+class FileProblem : public std::runtime_error {
+  public:
+    explicit FileProblem(const std::string& what, bool over_budget = false)
+        : std::runtime_error(what), too_large(over_budget) {}
+    bool too_large;  // the budget was the reason
+};
+
+// Reads a regular file of at most `most_bytes`. Throws FileProblem. Large files are read by several threads.
+FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
+
+// What would keep `file` from being read (it is missing, a folder, a device, not readable); empty when nothing would.
+std::string file_problem(const std::filesystem::path& file);
+
+}  // namespace raywalk
