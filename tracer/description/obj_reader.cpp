@@ -94,10 +94,9 @@ class Assembly {
 };
 
 Diagnostic Assembly::diagnostic(Severity severity, const ObjRemark& remark, std::size_t chunk) const {
-    Diagnostic d{severity,
-                 {file_, bases_[chunk].line + remark.line + 1, remark.column, remark.length},
-                 remark.what,
-                 remark.expected};
+    Diagnostic d = error_at({file_, bases_[chunk].line + remark.line + 1, remark.column, remark.length}, remark.what,
+                            remark.expected);
+    d.severity = severity;
     quote_line(d, remark.source_line);
     return d;
 }
@@ -111,8 +110,7 @@ void Assembly::parse_pieces() {
         faces += chunks_[i].faces.size();
     });
     if (faces > limits_.triangles)
-        throw InputError(
-            Diagnostic{Severity::error, {file_}, "has too many triangles", how_to_raise(limits_, &Limits::triangles)});
+        throw InputError(error_of_file(file_, "has too many triangles", how_to_raise(limits_, &Limits::triangles)));
     bases_.resize(chunks_.size() + 1);
     for (std::size_t i = 0; i < chunks_.size(); ++i) {
         bases_[i + 1] = {bases_[i].position + chunks_[i].positions.size(), bases_[i].normal + chunks_[i].normals.size(),
@@ -127,10 +125,8 @@ void Assembly::require_no_errors() const {
         for (const ObjRemark& remark : chunks_[i].errors) {
             errors.push_back(diagnostic(Severity::error, remark, i));
             if (errors.size() < limits_.errors) continue;
-            errors.push_back({Severity::error,
-                              {file_},
-                              "stopped after " + std::to_string(errors.size()) + " mistakes",
-                              "--max-errors N shows more"});
+            errors.push_back(error_of_file(file_, "stopped after " + std::to_string(errors.size()) + " mistakes",
+                                           "--max-errors N shows more"));
             throw InputError(std::move(errors));
         }
     }
@@ -140,7 +136,7 @@ void Assembly::require_no_errors() const {
 void Assembly::require_counts() const {
     const Base& total = bases_.back();
     const auto refuse = [&](std::string what, std::string advice) {
-        throw InputError(Diagnostic{Severity::error, {file_}, std::move(what), std::move(advice)});
+        throw InputError(error_of_file(file_, std::move(what), std::move(advice)));
     };
     if (total.face == 0) refuse("has no faces", "expected an OBJ file with lines such as: f 1 2 3");
     if (std::max(total.position, total.normal) > most_indexed)
@@ -212,10 +208,9 @@ void Assembly::drop_empty_normals(TriangleMesh& mesh, std::vector<Diagnostic>& w
     for (auto& corners : mesh.normal_faces)
         for (std::int32_t& corner : corners)
             if (corner >= 0 && empty[static_cast<std::size_t>(corner)]) corner = -1;
-    warnings.push_back({Severity::warning,
-                        {file_},
-                        std::to_string(dropped) + (dropped == 1 ? " normal has" : " normals have") + " no length",
-                        "the corners that name such a normal get one from the faces around them"});
+    warnings.push_back(
+        warning_at({file_}, std::to_string(dropped) + (dropped == 1 ? " normal has" : " normals have") + " no length",
+                   "the corners that name such a normal get one from the faces around them"));
 }
 
 TriangleMesh Assembly::run(std::vector<Diagnostic>& warnings) {
@@ -257,9 +252,8 @@ TriangleMesh read_obj(const std::filesystem::path& file, const Limits& limits, s
         const SourceLocation place = where.file.empty() ? SourceLocation{file.string()} : where;
         const std::string what =
             where.file.empty() ? problem.what() : quoted(std::string_view(file.native())) + " " + problem.what();
-        throw InputError(
-            Diagnostic{Severity::error, place, what,
-                       problem.too_large ? how_to_raise(limits, &Limits::mesh_bytes) : "expected an OBJ file"});
+        throw InputError(error_at(
+            place, what, problem.too_large ? how_to_raise(limits, &Limits::mesh_bytes) : "expected an OBJ file"));
     }
 }
 

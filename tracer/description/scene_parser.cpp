@@ -169,7 +169,7 @@ class Parser {
     SceneLine line_;  // the line being read
     bool more_ = false;
     const Limits& limits_;
-    SceneFiles files_;
+    NamedFiles files_;
     SceneReport report_;
     Scene scene_;
     std::optional<Place> viewer_;     // the Viewer block's name
@@ -362,11 +362,9 @@ void require_text(std::string_view text, const std::filesystem::path& file) {
     const auto byte = static_cast<unsigned char>(text[at]);
     const char* digits = "0123456789ABCDEF";
     const std::string hex = {digits[byte >> 4], digits[byte & 15]};
-    Diagnostic diagnostic{
-        Severity::error,
-        {file.string(), number, at - begin + 1, 1},
-        byte < 0x80 ? "the byte 0x" + hex + " has no place in a scene" : "the byte 0x" + hex + " is not UTF-8",
-        "a scene is text in UTF-8"};
+    Diagnostic diagnostic = error_at({file.string(), number, at - begin + 1},
+                                     "the byte 0x" + hex + (byte < 0x80 ? " has no place in a scene" : " is not UTF-8"),
+                                     "a scene is text in UTF-8");
     quote_line(diagnostic, text.substr(begin, end - begin));
     throw InputError(std::move(diagnostic));
 }
@@ -386,7 +384,7 @@ Scene read_scene(const std::filesystem::path& file, const Limits& limits, std::v
     } catch (const FileProblem& problem) {
         const std::string advice = problem.too_large ? how_to_raise(limits, &Limits::scene_bytes)
                                                      : "expected a scene file, such as scenes/cornell_box.scene";
-        throw InputError(Diagnostic{Severity::error, {file.string()}, problem.what(), advice});
+        throw InputError(error_of_file(file.string(), problem.what(), advice));
     }
 }
 

@@ -21,17 +21,15 @@ void SceneReport::add(std::vector<Diagnostic>& list, Diagnostic diagnostic, std:
 
 void SceneReport::error(const Place& place, std::string what, std::string expected) {
     if (full()) return;
-    Diagnostic diagnostic{Severity::error, location(place), std::move(what), std::move(expected)};
-    add(errors_, std::move(diagnostic), place.line);
+    add(errors_, error_at(location(place), std::move(what), std::move(expected)), place.line);
 }
 
 void SceneReport::error_of_file(std::string what, std::string expected) {
-    if (!full()) errors_.push_back({Severity::error, {file_}, std::move(what), std::move(expected)});
+    if (!full()) errors_.push_back(raywalk::error_of_file(file_, std::move(what), std::move(expected)));
 }
 
 void SceneReport::warning(const Place& place, std::string what, std::string expected) {
-    Diagnostic diagnostic{Severity::warning, location(place), std::move(what), std::move(expected)};
-    add(warnings_, std::move(diagnostic), place.line);
+    add(warnings_, warning_at(location(place), std::move(what), std::move(expected)), place.line);
 }
 
 void SceneReport::finish(std::vector<Diagnostic>& warnings) {
@@ -39,14 +37,12 @@ void SceneReport::finish(std::vector<Diagnostic>& warnings) {
     if (errors_.empty()) return;
     std::ranges::stable_sort(errors_, {}, [](const Diagnostic& d) { return d.where.line; });
     if (full())
-        errors_.push_back({Severity::error,
-                           {file_},
-                           "stopped after " + std::to_string(errors_.size()) + " mistakes",
-                           "--max-errors N shows more"});
+        errors_.push_back(raywalk::error_of_file(file_, "stopped after " + std::to_string(errors_.size()) + " mistakes",
+                                                 "--max-errors N shows more"));
     throw InputError(std::move(errors_));
 }
 
-SceneFiles::SceneFiles(const std::filesystem::path& scene, const Limits& limits)
+NamedFiles::NamedFiles(const std::filesystem::path& scene, const Limits& limits)
     : scene_(scene), folder_(scene.parent_path()) {
     std::error_code ignored;
     const auto canonical = [&](const std::filesystem::path& path) {
@@ -58,13 +54,13 @@ SceneFiles::SceneFiles(const std::filesystem::path& scene, const Limits& limits)
     for (const std::filesystem::path& allowed : limits.allowed_folders) roots_.push_back(canonical(allowed));
 }
 
-const SceneFiles::Found& SceneFiles::find(std::string_view name) {
+const NamedFiles::Found& NamedFiles::find(std::string_view name) {
     const auto known = seen_.find(name);
     if (known != seen_.end()) return known->second;
     return seen_.emplace(name, look(name)).first->second;
 }
 
-SceneFiles::Found SceneFiles::look(std::string_view name) const {
+NamedFiles::Found NamedFiles::look(std::string_view name) const {
     if (name.empty()) return {{}, "is no file name", "expected the name of a file"};
     const std::filesystem::path path = folder_ / std::filesystem::path(name);
     std::error_code error;

@@ -182,7 +182,7 @@ std::filesystem::path SceneValues::file(SourceLocation& where) {
         fail(*word, "the quote is not closed", "expected \" at the end of the name");
         return {};
     }
-    const SceneFiles::Found& found = files_.find(word->text);
+    const NamedFiles::Found& found = files_.find(word->text);
     if (!found.problem.empty()) fail(*word, quoted(word->text) + " " + found.problem, found.advice);
     return found.path;
 }

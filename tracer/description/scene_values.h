@@ -51,9 +51,9 @@ class SceneReport {
 
 // Files that a scene names: found from the scene's folder, kept inside the parent of that folder (links followed) or
 // an allowed folder, and looked at once each.
-class SceneFiles {
+class NamedFiles {
   public:
-    SceneFiles(const std::filesystem::path& scene, const Limits& limits);
+    NamedFiles(const std::filesystem::path& scene, const Limits& limits);
 
     struct Found {
         std::filesystem::path path;
@@ -82,7 +82,7 @@ inline constexpr Range length_or_zero{0, largest_length};
 class SceneValues {
   public:
     // `form` is the property as it should look: "center X Y Z".
-    SceneValues(const SceneLine& line, std::string_view form, SceneReport& report, SceneFiles& files)
+    SceneValues(const SceneLine& line, std::string_view form, SceneReport& report, NamedFiles& files)
         : line_(line), form_(form), report_(report), files_(files) {}
 
     int integer(std::string_view name, int least, int most);
@@ -111,7 +111,7 @@ class SceneValues {
     const SceneLine& line_;
     std::string_view form_;
     SceneReport& report_;
-    SceneFiles& files_;
+    NamedFiles& files_;
     std::size_t next_ = 1;
     bool failed_ = false;
 };

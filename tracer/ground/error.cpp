@@ -44,6 +44,18 @@ std::string joined(const std::vector<Diagnostic>& diagnostics) {
 
 }  // namespace
 
+Diagnostic error_at(SourceLocation where, std::string what, std::string expected) {
+    return {Severity::error, std::move(where), std::move(what), std::move(expected)};
+}
+
+Diagnostic warning_at(SourceLocation where, std::string what, std::string expected) {
+    return {Severity::warning, std::move(where), std::move(what), std::move(expected)};
+}
+
+Diagnostic error_of_file(std::string file, std::string what, std::string expected) {
+    return error_at({std::move(file)}, std::move(what), std::move(expected));
+}
+
 std::string printable(std::string_view text) {
     std::string result;
     result.reserve(text.size());
@@ -99,5 +111,7 @@ std::string to_string(const Diagnostic& diagnostic) {
 
 InputError::InputError(std::vector<Diagnostic> diagnostics)
     : std::runtime_error(joined(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+
+InputError::InputError(Diagnostic diagnostic) : InputError(std::vector{std::move(diagnostic)}) {}
 
 }  // namespace raywalk

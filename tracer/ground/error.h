@@ -33,6 +33,11 @@ struct Diagnostic {
     friend bool operator==(const Diagnostic&, const Diagnostic&) = default;
 };
 
+Diagnostic error_at(SourceLocation where, std::string what, std::string expected = {});
+Diagnostic warning_at(SourceLocation where, std::string what, std::string expected = {});
+// About a file as a whole.
+Diagnostic error_of_file(std::string file, std::string what, std::string expected = {});
+
 // Keeps of `line`, which diagnostic.where points into, what a message shows: at most about 100 bytes around the place.
 void quote_line(Diagnostic& diagnostic, std::string_view line);
 
@@ -51,7 +56,7 @@ std::string to_string(const Diagnostic& diagnostic);
 class InputError : public std::runtime_error {
   public:
     explicit InputError(std::vector<Diagnostic> diagnostics);
-    explicit InputError(Diagnostic diagnostic) : InputError(std::vector{std::move(diagnostic)}) {}
+    explicit InputError(Diagnostic diagnostic);
     [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 
   private:
