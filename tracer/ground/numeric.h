@@ -22,6 +22,9 @@ inline constexpr float slab_slack = 4e-7f;
 // barycentrics of the Moeller-Trumbore test carry a few e of error.
 inline constexpr float edge_slack = 5e-7f;
 
+// A sum of three products is compared with zero with this slack, relative to the sum of their magnitudes.
+inline constexpr float sum_slack = 3e-7f;
+
 // A direction component smaller than this is replaced by it, sign kept, so that its reciprocal stays finite and
 // 0 * infinity never appears.
 inline constexpr float smallest_direction = 1e-18f;
