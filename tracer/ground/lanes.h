@@ -34,10 +34,18 @@ using IntMaskRegister = hn::Mask<IntTag>;
 inline constexpr int register_lanes = static_cast<int>(hn::MaxLanes(RealTag()));
 inline constexpr int registers = lanes / register_lanes;
 
-// One statement for each register of a value; the compiler unrolls it.
+// One statement for each register of a value; unrolled, but for the sixteen "registers" of the scalar build, where that
+// would only make the compiler slow.
+#undef RAYWALK_EACH
+#if HWY_TARGET == HWY_SCALAR
 #define RAYWALK_EACH(i) \
-    HWY_UNROLL(16)      \
+    HWY_UNROLL(1)       \
     for (int i = 0; i < registers; ++i)
+#else
+#define RAYWALK_EACH(i) \
+    HWY_UNROLL(4)       \
+    for (int i = 0; i < registers; ++i)
+#endif
 
 struct Mask {
     MaskRegister m[registers];
