@@ -1,0 +1,46 @@
+#include "app/loaded_scene.h"
+
+#include "app/console.h"
+#include "tracer/description/scene_parser.h"
+#include "tracer/ground/stopwatch.h"
+
+namespace raywalk {
+
+LoadedScene load_scene(const Options& options) {
+    LoadedScene loaded;
+    std::vector<Diagnostic> warnings;
+    const auto print_warnings = [&] {
+        if (options.verbosity != Verbosity::quiet) print_diagnostics(warnings);
+    };
+    try {
+        const Stopwatch watch;
+        loaded.scene = read_scene(options.scene, options.limits, warnings);
+        loaded.read_seconds = watch.seconds();
+        loaded.compiled = compile(loaded.scene, options.compile, options.limits, warnings, &loaded.compile_statistics);
+    } catch (const InputError&) {
+        print_warnings();
+        throw;
+    }
+    print_warnings();
+    return loaded;
+}
+
+glm::ivec2 picture_size(const Options& options, const Scene& scene) {
+    return options.size.value_or(glm::ivec2(scene.viewer.width, scene.viewer.height));
+}
+
+std::uint32_t samples_per_pixel(const Options& options, const Scene& scene) {
+    if (options.samples_per_pixel) return *options.samples_per_pixel;
+    const int aperture = scene.viewer.depth_of_field ? scene.viewer.depth_of_field->samples : 1;
+    return static_cast<std::uint32_t>(aperture) * static_cast<std::uint32_t>(scene.viewer.antialiasing.value_or(1));
+}
+
+View opening_view(const Options& options, const Scene& scene) {
+    const glm::ivec2 size = picture_size(options, scene);
+    return {.camera = opening_camera(scene.viewer, static_cast<double>(size.x) / size.y, options.projection),
+            .width = size.x,
+            .height = size.y,
+            .settings = {.seed = options.seed, .one_shot = samples_per_pixel(options, scene) == 1}};
+}
+
+}  // namespace raywalk

@@ -1,0 +1,104 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/interrupts.h"
+#include "app/progress.h"
+#include "app/statistics.h"
+#include "tracer/description/image.h"
+#include "tracer/ground/stopwatch.h"
+#include "tracer/kernels/kernels.h"
+#include "tracer/rendering/renderer.h"
+
+namespace raywalk {
+
+namespace {
+
+// Samples of one pass over the picture. An interrupted picture of many samples is then a noisier one, not half of one.
+constexpr std::uint32_t samples_per_pass = 16;
+
+// Every sample of the picture, with progress; returns early when interrupted.
+void render(Renderer& renderer, std::uint32_t samples, bool quiet) {
+    const auto tiles = static_cast<std::uint64_t>(renderer.film().tiles.size());
+    const std::uint64_t passes = (samples + samples_per_pass - 1) / samples_per_pass;
+    Progress progress(Progress::style_for(quiet), tiles * passes);
+    for (std::uint32_t done = 0; done < samples && !interrupted();) {
+        done = samples - done <= samples_per_pass ? samples : done + samples_per_pass;
+        renderer.render_until(done, interrupted(), [&](int) { progress.advance(); });
+    }
+}
+
+void save(const Renderer& renderer, const Options& options) {
+    const Film& film = renderer.film();
+    if (is_float_extension(options.output)) {
+        write_image(options.output, mean_radiance(film));
+        return;
+    }
+    const Exposure exposure = options.exposure.value_or(Exposure{});
+    const float factor = exposure.value ? *exposure.value : normalizing_exposure(film);
+    write_image(options.output, film.width, film.height, display_values(film, renderer.kernels(), factor));
+}
+
+// Of all the samples asked for, how many are there: 0..1.
+double finished_share(const Film& film, std::uint32_t samples) {
+    std::uint64_t done = 0;
+    for (const std::uint32_t of_tile : film.samples) done += of_tile;
+    return static_cast<double>(done) / (static_cast<double>(samples) * static_cast<double>(film.samples.size()));
+}
+
+std::string size_text(const Film& film) { return std::to_string(film.width) + " x " + std::to_string(film.height); }
+
+void print_load_times(const LoadedScene& loaded) {
+    const CompileStatistics& compile = loaded.compile_statistics;
+    print_note("scene read in " + duration_text(loaded.read_seconds) + ", meshes in " +
+               duration_text(compile.mesh_seconds) + ", images in " + duration_text(compile.image_seconds) +
+               "; tree built in " + duration_text(compile.build.seconds));
+}
+
+void print_ray_times(const Renderer& renderer, double seconds) {
+    const RayCounts& rays = renderer.ray_counts();
+    const std::uint64_t all = rays.camera + rays.shadow + rays.reflection + rays.refraction;
+    print_note(count_text(all, "ray") + ", " +
+               count_text(static_cast<std::uint64_t>(static_cast<double>(all) / std::max(seconds, 1e-9)), "ray") +
+               " a second, " + count_text(static_cast<std::uint64_t>(renderer.threads()), "thread") + ", " +
+               std::string(renderer.kernels().name));
+}
+
+}  // namespace
+
+int render_command(const Options& options, const LoadedScene& loaded) {
+    const bool quiet = options.verbosity == Verbosity::quiet, verbose = options.verbosity == Verbosity::verbose;
+    if (options.exposure && is_float_extension(options.output) && !quiet)
+        print_warning("--exposure changes nothing here: " + options.output.extension().string() +
+                      " files hold linear radiance");
+    if (verbose) print_load_times(loaded);
+
+    const GracefulInterrupts graceful;
+    const Stopwatch watch;
+    Renderer renderer(loaded.compiled, select_kernels(options.isa), options.threads);
+    View view = opening_view(options, loaded.scene);
+    view.camera = pressed(view.camera, options.keys);
+    renderer.set_view(view);
+    const std::uint32_t samples = samples_per_pixel(options, loaded.scene);
+    render(renderer, samples, quiet);
+    const double seconds = watch.seconds();
+
+    save(renderer, options);
+    if (options.stats) write_statistics(*options.stats, statistics_of(options, loaded, renderer, seconds));
+    if (const std::uint64_t dropped = renderer.ray_counts().dropped_samples; dropped > 0 && !quiet)
+        print_warning(count_text(dropped, "sample") + " were not finite and count as black");
+
+    const double share = finished_share(renderer.film(), samples);
+    if (share < 1) {
+        char percent[32];
+        std::snprintf(percent, sizeof percent, "%.1f %%", 100 * share);
+        print_error("interrupted after " + duration_text(seconds) + ": '" + options.output.string() + "' holds " +
+                    percent + " of the picture's samples");
+        return exit_interrupted;
+    }
+    if (verbose) print_ray_times(renderer, seconds);
+    if (!quiet)
+        print_note("rendered " + options.output.string() + ", " + size_text(renderer.film()) + " pixels, " +
+                   count_text(samples, "sample") + " each, in " + duration_text(seconds));
+    return exit_done;
+}
+
+}  // namespace raywalk
