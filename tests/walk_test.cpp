@@ -109,7 +109,7 @@ TEST(Walk, OppositeKeysCancel) {
 }
 
 TEST(Walk, AHeldKeyLeadsToTheSamePlaceWhateverTheFrameRate) {
-    for (const HeldKeys keys : {HeldKeys{.forward = true}, HeldKeys{.turn_left = true, .turn_up = true},
+    for (const HeldKeys keys : {HeldKeys{.forward = true}, HeldKeys{.turn_up = true, .turn_left = true},
                                 HeldKeys{.forward = true, .turn_right = true}}) {
         const auto after = [&](int frames) {
             Camera camera;
