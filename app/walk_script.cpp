@@ -17,10 +17,8 @@ constexpr std::string_view expected_letters =
 
 [[noreturn]] void fail(std::string_view text, std::string_view name, std::size_t at, std::size_t length,
                        std::string what, std::string expected) {
-    Diagnostic diagnostic{.where = {.file = std::string(name), .line = 1, .column = at + 1, .length = length},
-                          .what = std::move(what),
-                          .expected = std::move(expected),
-                          .source_line = {}};
+    Diagnostic diagnostic = error_at({.file = std::string(name), .line = 1, .column = at + 1, .length = length},
+                                     std::move(what), std::move(expected));
     quote_line(diagnostic, text);
     throw InputError(std::move(diagnostic));
 }

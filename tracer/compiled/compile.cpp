@@ -207,11 +207,10 @@ void compile_lights(const Scene& scene, const Limits& limits, CompiledScene& com
         const auto n = static_cast<std::uint64_t>(light.area ? light.area->n : 1);
         points += n * n;
         if (points <= limits.light_points) continue;
-        throw InputError(Diagnostic{.where = {.file = scene.file.string()},
-                                    .what = "the lights of this scene are more than " +
-                                            std::to_string(limits.light_points) + " points (area n counts n x n)",
-                                    .expected = "--max-light-points raises the limit",
-                                    .source_line = {}});
+        throw InputError(error_of_file(scene.file.string(),
+                                       "the lights of this scene have more than " +
+                                           std::to_string(limits.light_points) + " points (area n counts n x n)",
+                                       how_to_raise(limits, &Limits::light_points)));
     }
     for (const Light& light : scene.lights) compile_light(light, compiled);
 }
@@ -221,11 +220,10 @@ void compile_images(const Scene& scene, const std::map<std::filesystem::path, Im
     for (const auto& [file, image] : files) texels += image.texels.size();
     // Texels are gathered by signed 32-bit indices.
     if (texels > std::numeric_limits<std::int32_t>::max())
-        throw InputError(Diagnostic{.where = {.file = scene.file.string()},
-                                    .what = "the images of this scene have " + std::to_string(texels) +
-                                            " pixels together, more than 2147483647",
-                                    .expected = "use smaller images",
-                                    .source_line = {}});
+        throw InputError(error_of_file(
+            scene.file.string(),
+            "the images of this scene have " + std::to_string(texels) + " pixels together, more than 2147483647",
+            "use smaller images"));
     compiled.texels.reserve(texels);
     for (const auto& [file, image] : files) {
         compiled.images.push_back({static_cast<std::uint32_t>(compiled.texels.size()), image.width, image.height});

@@ -11,9 +11,7 @@
 
 namespace raywalk {
 
-// Coordinates and radii are brought to at most this in magnitude: products of three of them (Moeller-Trumbore) then
-// stay finite in single precision, and nothing so far away can be seen (exp(-0.02 * 1e12) is 0).
-inline constexpr double coordinate_limit = 1e12;
+// Brought to at most `largest_length` in magnitude: what is farther away could not be seen anyway.
 float limited(double coordinate);
 glm::vec3 limited(const glm::dvec3& point);
 

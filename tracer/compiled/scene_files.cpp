@@ -16,14 +16,6 @@ void append(std::vector<Diagnostic>& to, const std::vector<Diagnostic>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-Diagnostic diagnostic(Severity severity, const SourceLocation& where, std::string what, std::string expected) {
-    return {.severity = severity,
-            .where = where,
-            .what = std::move(what),
-            .expected = std::move(expected),
-            .source_line = {}};
-}
-
 // The first place that names each image file.
 std::map<std::filesystem::path, SourceLocation> image_files(const Scene& scene) {
     std::map<std::filesystem::path, SourceLocation> files;
@@ -52,9 +44,9 @@ SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits) {
             try {
                 TriangleMesh triangle_mesh = read_obj(mesh.file, limits, read.warnings);
                 if (const std::string problem = placement_problem(triangle_mesh); !problem.empty())
-                    throw InputError(diagnostic(Severity::error, mesh.where,
-                                                "mesh '" + mesh.file.string() + "' cannot be placed: " + problem,
-                                                "a mesh needs a face and two different vertices"));
+                    throw InputError(error_at(mesh.where,
+                                              "mesh '" + mesh.file.string() + "' cannot be placed: " + problem,
+                                              "a mesh needs a face and two different vertices"));
                 read.files.emplace(mesh.file, std::move(triangle_mesh));
             } catch (const InputError& error) {
                 append(read.errors, error.diagnostics());
@@ -64,11 +56,10 @@ SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits) {
         }
         triangles += read.files.at(mesh.file).faces.size();
         if (triangles > limits.triangles) {
-            read.errors.push_back(diagnostic(Severity::error, mesh.where,
-                                             "with this mesh the scene has " + std::to_string(triangles) +
-                                                 " triangles, more than the limit of " +
-                                                 std::to_string(limits.triangles),
-                                             "--max-triangles raises the limit"));
+            read.errors.push_back(error_at(mesh.where,
+                                           "with this mesh the scene has " + std::to_string(triangles) +
+                                               " triangles, more than the limit of " + std::to_string(limits.triangles),
+                                           how_to_raise(limits, &Limits::triangles)));
             break;
         }
     }
@@ -105,7 +96,7 @@ SceneFiles<Image> read_images(const Scene& scene, const Limits& limits) {
         try {
             Image image = images[i].get();
             if (image.width != image.height)
-                read.warnings.push_back(diagnostic(Severity::warning, where,
+                read.warnings.push_back(warning_at(where,
                                                    "image '" + file.string() + "' is " + std::to_string(image.width) +
                                                        " x " + std::to_string(image.height) +
                                                        " pixels and is stretched over a square",
