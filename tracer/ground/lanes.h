@@ -204,6 +204,20 @@ HWY_INLINE void store_unaligned(Int a, std::int32_t* p) {
     RAYWALK_EACH(i) hn::StoreU(a.v[i], IntTag(), p + i * register_lanes);
 }
 
+// The lanes of `condition` side by side from p on, which need not be aligned; up to sixteen elements from p are written.
+HWY_INLINE void compress_store(Real a, Mask condition, float* p) {
+    RAYWALK_EACH(i) {
+        hn::StoreU(hn::Compress(a.v[i], condition.m[i]), RealTag(), p);
+        p += hn::CountTrue(RealTag(), condition.m[i]);
+    }
+}
+HWY_INLINE void compress_store(Int a, Mask condition, std::int32_t* p) {
+    RAYWALK_EACH(i) {
+        hn::StoreU(hn::Compress(a.v[i], hn::RebindMask(IntTag(), condition.m[i])), IntTag(), p);
+        p += hn::CountTrue(RealTag(), condition.m[i]);
+    }
+}
+
 // base[index] for every lane: every index must be readable, also in lanes that do not matter.
 HWY_INLINE Real gather(const float* base, Int index) {
     Real r;

@@ -1,0 +1,148 @@
+// Light that hits receive from the lights they see (spec 4.4): 64 hits at a time, one shadow beam per point of light.
+// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
+
+#if defined(RAYWALK_KERNELS_PHONG_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYWALK_KERNELS_PHONG_H
+#undef RAYWALK_KERNELS_PHONG_H
+#else
+#define RAYWALK_KERNELS_PHONG_H
+#endif
+
+#include <bit>
+#include <cstdint>
+
+#include "tracer/compiled/compiled_scene.h"
+#include "tracer/ground/numeric.h"
+#include "tracer/ground/random.h"
+#include "tracer/ground/vectors.h"
+#include "tracer/kernels/intersect.h"
+#include "tracer/kernels/math.h"
+#include "tracer/kernels/tile_scratch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace raywalk {
+namespace HWY_NAMESPACE {
+
+inline constexpr float attenuation = 0.02f;  // mu, per scene unit
+
+HWY_INLINE Vec3 load3(const float (*p)[beam_rays], int at) {
+    return {load(p[0] + at), load(p[1] + at), load(p[2] + at)};
+}
+HWY_INLINE void store3(Vec3 a, float (*p)[beam_rays], int at) {
+    store(a.x, p[0] + at);
+    store(a.y, p[1] + at);
+    store(a.z, p[2] + at);
+}
+HWY_INLINE std::uint32_t lanes_of(std::uint64_t rays, int group) {
+    return static_cast<std::uint32_t>(rays >> (group * lanes)) & 0xffffu;
+}
+HWY_INLINE std::uint64_t rays_of(std::uint32_t lanes_set, int group) {
+    return static_cast<std::uint64_t>(lanes_set) << (group * lanes);
+}
+
+// What each hit of `shade.lit` would receive from a light at `light` if it sees it, per unit of the light's radiance:
+// shade.diffuse and shade.specular; and the shadow rays that tell, from the light to the hits. Returns which of the
+// hits would receive anything.
+HWY_INLINE std::uint64_t face_light(const float light[3], ShadeBatch& shade, BeamRays& shadow) {
+    for (int axis = 0; axis < 3; ++axis) shadow.origin[axis] = light[axis];
+    std::uint64_t receiving = 0;
+    for (int g = 0; g < beam_rays / lanes; ++g) {
+        const std::uint32_t lit = lanes_of(shade.lit, g);
+        if (lit == 0) continue;
+        const int at = g * lanes;
+        const Vec3 to_light = splat3(light) - load3(shade.position, at);
+        const Vec3 normal = load3(shade.normal, at), view = load3(shade.view, at);
+        const Real squared_distance = max(dot(to_light, to_light), Real(1e-30f));
+        const Real inverse_distance = Real(1.0f) / sqrt(squared_distance);
+        const Real cosine = dot(normal, to_light) * inverse_distance;  // L.N
+        // R.V with R = 2 (L.N) N - L
+        const Real mirrored = mul_sub(cosine * Real(2.0f), dot(normal, view), dot(to_light, view) * inverse_distance);
+        const Real x = max(mirrored, Real(0.0f));
+        const Real x2 = x * x;
+        const Real highlight = shade.all_fifth_powers ? x2 * x2 * x : power(x, load(shade.shininess + at));
+        const Real length = mul_add(squared_distance, inverse_distance, load(shade.length + at));
+        const Real kept = exp(length * Real(-attenuation));
+        const Real diffuse = max(cosine, Real(0.0f)) * kept * load(shade.colored + at);
+        const Real specular = highlight * load(shade.specular_weight + at) * kept;
+        store(diffuse, shade.diffuse + at);
+        store(specular, shade.specular + at);
+        receiving |= rays_of(bits(diffuse + specular > Real(0.0f)) & lit, g);
+
+        // The shadow ray ends off the surface, on the light's side of it.
+        const Vec3 geometric_normal = load3(shade.geometric_normal, at);
+        const Real offset = copy_sign(load(shade.offset + at), dot(geometric_normal, to_light));
+        store3(mul_add(geometric_normal, offset, -to_light), shadow.direction, at);
+    }
+    return receiving;
+}
+
+// Adds one point's light to the sums of those who see it.
+HWY_INLINE void receive(std::uint64_t seeing, ShadeBatch& shade) {
+    for (int g = 0; g < beam_rays / lanes; ++g) {
+        const std::uint32_t lanes_seeing = lanes_of(seeing, g);
+        if (lanes_seeing == 0) continue;
+        const int at = g * lanes;
+        const Mask sees = mask_of_bits(lanes_seeing);
+        const Real zero(0.0f);
+        store(load(shade.diffuse_sum + at) + select(sees, load(shade.diffuse + at), zero), shade.diffuse_sum + at);
+        store(load(shade.specular_sum + at) + select(sees, load(shade.specular + at), zero), shade.specular_sum + at);
+    }
+}
+
+// Adds what a whole light (all its points) gave, `radiance` each point, to shade.local.
+HWY_INLINE void receive_light(const float radiance[3], float weight, ShadeBatch& shade) {
+    for (int at = 0; at < beam_rays; at += lanes) {
+        const Real diffuse = load(shade.diffuse_sum + at), specular = load(shade.specular_sum + at);
+        for (int channel = 0; channel < 3; ++channel) {
+            const Real received = mul_add(diffuse, load(shade.color[channel] + at), specular);
+            float* local = shade.local[channel] + at;
+            store(mul_add(received, Real(radiance[channel] * weight), load(local)), local);
+        }
+        store(Real(0.0f), shade.diffuse_sum + at);
+        store(Real(0.0f), shade.specular_sum + at);
+    }
+}
+
+// At most so many points of a light are used per sample unless the picture is made of one sample.
+inline constexpr std::uint32_t points_per_sample = 16;
+
+// shade.local = light received directly by the hits of shade.lit, attenuated from light to hit to eye.
+// `coherent`: the hits lie near each other, as those of a tile do.
+inline void light_hits(const CompiledScene& scene, const SampleSettings& settings, std::uint32_t sample, bool coherent,
+                       ShadeBatch& shade, BeamRays& shadow, RayCounts& counts) {
+    (void)coherent;
+    for (int at = 0; at < beam_rays; at += lanes) {
+        for (auto& channel : shade.local) store(Real(0.0f), channel + at);
+        store(Real(0.0f), shade.diffuse_sum + at);
+        store(Real(0.0f), shade.specular_sum + at);
+        store(Real(0.0f), shadow.t_min + at);
+        store(Real(shadow_t_max), shadow.t_max + at);
+    }
+    if (shade.lit == 0) return;
+    for (const LightGroup& group : scene.light_groups) {
+        const LightPoint* points = scene.light_points.data() + group.first;
+        const bool all_points = settings.one_shot || group.count <= points_per_sample;
+        const std::uint32_t used = all_points ? group.count : points_per_sample;
+        const VisitingOrder order =
+            all_points ? VisitingOrder{group.count, 0, 1} : visiting_order(group.count, settings.seed);
+        bool received = false;
+        for (std::uint32_t i = 0; i < used; ++i) {
+            const LightPoint& point = points[all_points ? i : order(std::uint64_t{sample} * used + i)];
+            const std::uint64_t receiving = face_light(point.position, shade, shadow);
+            if (receiving == 0) continue;
+            counts.shadow += static_cast<std::uint64_t>(std::popcount(receiving));
+            const std::uint64_t seeing = receiving & ~occluded_beam(scene, shadow, receiving);
+            if (seeing == 0) continue;
+            receive(seeing, shade);
+            received = true;
+        }
+        if (received)
+            receive_light(points[0].radiance, static_cast<float>(group.count) / static_cast<float>(used), shade);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace raywalk
+HWY_AFTER_NAMESPACE();
+
+#endif  // RAYWALK_KERNELS_PHONG_H
