@@ -1,0 +1,164 @@
+// The house keeps its own rules: floors, names, sizes, text.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path root = RAYWALK_ROOT;
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<std::string> lines_of(const fs::path& file) {
+    std::vector<std::string> lines;
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+// Files below the named folders of the project whose extension is among the given ones, sorted.
+std::vector<fs::path> files(const std::vector<std::string>& folders, const std::set<std::string>& extensions) {
+    std::vector<fs::path> result;
+    for (const std::string& folder : folders)
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+            if (entry.is_regular_file() && extensions.contains(entry.path().extension().string()))
+                result.push_back(entry.path());
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+std::vector<fs::path> sources() { return files({"tracer", "app", "scenes", "tests"}, {".h", ".cpp"}); }
+
+std::string name_of(const fs::path& file) { return file.lexically_relative(root).generic_string(); }
+
+// Floors from the ground up; a folder that is none of them has no place in an include of tracer or app.
+constexpr std::array floors = {"tracer/ground/",  "tracer/description/", "tracer/compiled/",
+                               "tracer/kernels/", "tracer/rendering/",   "app/"};
+
+std::optional<std::size_t> floor_of(const std::string& path) {
+    for (std::size_t i = 0; i < floors.size(); ++i)
+        if (path.starts_with(floors[i])) return i;
+    return {};
+}
+
+// Plain data of a higher floor that a lower one may speak of.
+bool is_shared_data(const std::string& from, const std::string& included) {
+    return from.starts_with("tracer/kernels/") &&
+           (included == "tracer/rendering/camera.h" || included == "tracer/rendering/film.h");
+}
+
+TEST(House, FilesIncludeOnlyTheirOwnFloorOrLowerOnes) {
+    const std::regex include(R"(^\s*#\s*include\s+"([^"]+)\")");
+    for (const fs::path& file : files({"tracer", "app"}, {".h", ".cpp"})) {
+        const auto own = floor_of(name_of(file));
+        ASSERT_TRUE(own) << name_of(file) << " stands on no floor";
+        for (const std::string& line : lines_of(file)) {
+            std::smatch match;
+            if (!std::regex_search(line, match, include)) continue;
+            const std::string included = match[1];
+            const auto theirs = floor_of(included);
+            if (!theirs) {
+                EXPECT_FALSE(fs::exists(root / included))
+                    << name_of(file) << " includes " << included << ", which is on no floor";
+                continue;
+            }
+            EXPECT_TRUE(*theirs <= *own || is_shared_data(name_of(file), included))
+                << name_of(file) << " includes " << included << " of a higher floor";
+        }
+    }
+}
+
+TEST(House, TheLibraryKnowsNoWindowNoVulkanAndNoCommandLine) {
+    const std::regex foreign(R"(#\s*include\s*[<"](vulkan|GLFW|imgui|CLI)/)");
+    for (const fs::path& file : files({"tracer"}, {".h", ".cpp"}))
+        EXPECT_FALSE(std::regex_search(text_of(file), foreign)) << name_of(file);
+}
+
+TEST(House, AFileIsOneIdeaOfAtMostFourHundredLines) {
+    for (const fs::path& file : sources()) EXPECT_LE(lines_of(file).size(), 400u) << name_of(file);
+}
+
+TEST(House, NamesAreLowerCaseWordsJoinedByUnderscores) {
+    const std::regex name("[a-z0-9]+(_[a-z0-9]+)*\\.(h|cpp)");
+    for (const fs::path& file : sources())
+        EXPECT_TRUE(std::regex_match(file.filename().string(), name)) << name_of(file);
+}
+
+TEST(House, EveryFileBeginsBySayingWhatItIs) {
+    for (const fs::path& file : files({"tracer", "app", "scenes"}, {".h"})) {
+        const auto lines = lines_of(file);
+        ASSERT_FALSE(lines.empty()) << name_of(file);
+        EXPECT_TRUE(lines[0].starts_with("// ")) << name_of(file);
+        // Headers of kernels are read once per instruction set.
+        const std::string text = text_of(file);
+        EXPECT_TRUE(text.find("\n#pragma once\n") != text.npos || text.find("HWY_TARGET_TOGGLE") != text.npos)
+            << name_of(file) << " does not guard itself";
+    }
+}
+
+TEST(House, TextIsCleanAndPromisesNothingForLater) {
+    const std::regex later(
+        "\\b(TO"
+        "DO|FIX"
+        "ME|X"
+        "XX)\\b");
+    auto texts = sources();
+    const auto more = files({"app", "scenes", "tests", "tools"}, {".txt", ".sh", ".md", ".scene", ".comp", ".glsl"});
+    texts.insert(texts.end(), more.begin(), more.end());
+    for (const fs::path& file : texts) {
+        const std::string text = text_of(file);
+        EXPECT_TRUE(text.empty() || text.back() == '\n') << name_of(file) << " does not end its last line";
+        std::size_t number = 0;
+        for (const std::string& line : lines_of(file)) {
+            ++number;
+            EXPECT_FALSE(line.ends_with(' ') || line.ends_with('\r') || line.ends_with('\t'))
+                << name_of(file) << ':' << number;
+            EXPECT_FALSE(std::regex_search(line, later)) << name_of(file) << ':' << number << ": " << line;
+        }
+    }
+}
+
+TEST(House, NoFileNamesAPlaceOfOneMachine) {
+    const std::regex place(
+        "[\"' (=](/ho"
+        "me/|/ro"
+        "ot/|/us"
+        "ers/|/wo"
+        "rk/)",
+        std::regex::icase);
+        "[\"' (=](/home/|/ro"
+        "ot/|/us"
+        "ers/|C:\\\\)",
+        std::regex::icase);
+        auto texts = sources();
+        const auto more = files({"app", "scenes", "tests", "tools", "tracer"}, {".sh", ".md", ".scene", ".txt"});
+        for (const fs::path& file : more)
+            if (name_of(file).find("build/") == std::string::npos) texts.push_back(file);
+        for (const fs::path& file : texts) EXPECT_FALSE(std::regex_search(text_of(file), place)) << name_of(file);
+}
+
+TEST(House, EverySourceIsBuilt) {
+    for (const fs::path& file : files({"tracer", "app", "scenes", "tests"}, {".cpp"})) {
+        bool listed = false;
+        for (fs::path folder = file.parent_path(); !listed && folder != root.parent_path();
+             folder = folder.parent_path())
+            listed = text_of(folder / "CMakeLists.txt").find(file.lexically_relative(folder).generic_string()) !=
+                     std::string::npos;
+        EXPECT_TRUE(listed) << name_of(file) << " is in no CMakeLists.txt";
+    }
+}
+
+}  // namespace
