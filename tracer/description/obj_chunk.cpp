@@ -293,7 +293,8 @@ void ChunkParser::add_faces() {
 void ChunkParser::parse_other() {
     const std::string_view word = word_at(p_, end_);
     if (word == "v" || word == "vn" || word == "f")
-        return fail(p_, quoted(word) + " without values", "expected: v X Y Z, vn X Y Z or f A B C");
+        return fail(p_, quoted(word) + " has no values",
+                    word == "f" ? "expected: f A B C" : "expected: " + std::string(word) + " X Y Z");
     const bool known = word == "vt" || std::ranges::find(ignored_words, word) != std::end(ignored_words);
     if (!known && out_.unknown_words.empty())
         out_.unknown_words.push_back(

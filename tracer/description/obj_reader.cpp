@@ -215,12 +215,12 @@ void Assembly::drop_empty_normals(TriangleMesh& mesh, std::vector<Diagnostic>& w
 
 TriangleMesh Assembly::run(std::vector<Diagnostic>& warnings) {
     parse_pieces();
-    require_no_errors();
-    require_counts();
     const auto unknown = std::ranges::find_if(chunks_, [](const ObjChunk& c) { return !c.unknown_words.empty(); });
     if (unknown != chunks_.end())
         warnings.push_back(diagnostic(Severity::warning, unknown->unknown_words[0],
                                       static_cast<std::size_t>(unknown - chunks_.begin())));
+    require_no_errors();
+    require_counts();
     TriangleMesh mesh;
     mesh.positions.resize(bases_.back().position);
     mesh.normals.resize(bases_.back().normal);

@@ -31,12 +31,13 @@ constexpr int largest_count = 1'000'000'000;     // of samples; their product ha
 constexpr Property<Viewer> viewer_properties[] = {
     {"geo", "geo WIDTH HEIGHT", true,
      [](SceneValues& v, Viewer& b) {
-         b.width = v.integer("width", 1, largest_picture);
-         b.height = v.integer("height", 1, largest_picture);
+         b.width = v.integer("the width", 1, largest_picture);
+         b.height = v.integer("the height", 1, largest_picture);
      }},
     {"view", "view WIDTH HEIGHT", false,
      [](SceneValues& v, Viewer& b) {
-         const int width = v.integer("width", 1, largest_viewport), height = v.integer("height", 1, largest_viewport);
+         const int width = v.integer("the width", 1, largest_viewport),
+                   height = v.integer("the height", 1, largest_viewport);
          b.viewport = glm::dvec2(width, height);
      }},
     {"center", "center X Y Z", true, [](SceneValues& v, Viewer& b) { b.center = v.vector(); }},
@@ -44,18 +45,18 @@ constexpr Property<Viewer> viewer_properties[] = {
     {"up", "up X Y Z", true, [](SceneValues& v, Viewer& b) { b.up = v.vector(); }},
     {"fovy", "fovy DEGREES", true,
      [](SceneValues& v, Viewer& b) {
-         b.fovy_degrees = v.number("field of view", {0, 180, true});
+         b.fovy_degrees = v.number("the field of view", {0, 180, true});
      }},
     {"dop", "dop APERTURE_RADIUS FOCAL_DISTANCE SAMPLES", false,
      [](SceneValues& v, Viewer& b) {
          DepthOfField dop;
-         dop.aperture_radius = v.number("aperture radius", length_or_zero);
-         dop.focal_distance = v.number("focal distance", positive_length);
-         dop.samples = v.integer("sample count", 1, largest_count);
+         dop.aperture_radius = v.number("the aperture radius", length_or_zero);
+         dop.focal_distance = v.number("the focal distance", positive_length);
+         dop.samples = v.integer("the sample count", 1, largest_count);
          b.depth_of_field = dop;
      }},
     {"anti", "anti SAMPLES", false,
-     [](SceneValues& v, Viewer& b) { b.antialiasing = v.integer("sample count", 1, largest_count); }},
+     [](SceneValues& v, Viewer& b) { b.antialiasing = v.integer("the sample count", 1, largest_count); }},
 };
 
 constexpr Property<Light> light_properties[] = {
@@ -63,48 +64,60 @@ constexpr Property<Light> light_properties[] = {
      [](SceneValues& v, Light& b) {
          AreaSpread area;
          area.n = v.integer("n", 1, 30'000);  // n * n fits an int
-         area.radius = v.number("radius", length_or_zero);
+         area.radius = v.number("the radius", length_or_zero);
          b.area = area;
      }},
     {"origin", "origin X Y Z", true, [](SceneValues& v, Light& b) { b.origin = v.vector(); }},
     {"color", "color COLOR", true, [](SceneValues& v, Light& b) { b.color = v.color(); }},
     {"intensity", "intensity NUMBER", true,
-     [](SceneValues& v, Light& b) { b.intensity = v.number("intensity", length_or_zero); }},
+     [](SceneValues& v, Light& b) { b.intensity = v.number("the intensity", length_or_zero); }},
 };
 
 constexpr Property<Plane> plane_properties[] = {
-    {"texture", "texture TEXTURE ...", true, [](SceneValues& v, Plane& b) { b.texture = v.texture(); }},
+    {"texture", "texture PureTexture MATERIAL COLOR (or GridTexture, ImageTexture)", true,
+     [](SceneValues& v, Plane& b) { b.texture = v.texture(); }},
     {"normal", "normal X Y Z", true, [](SceneValues& v, Plane& b) { b.normal = v.vector(); }},
-    {"offset", "offset NUMBER", true, [](SceneValues& v, Plane& b) { b.offset = v.number("offset", coordinate); }},
+    {"offset", "offset NUMBER", true, [](SceneValues& v, Plane& b) { b.offset = v.number("the offset", coordinate); }},
 };
 
 constexpr Property<Sphere> sphere_properties[] = {
-    {"texture", "texture TEXTURE ...", true, [](SceneValues& v, Sphere& b) { b.texture = v.texture(); }},
+    {"texture", "texture PureTexture MATERIAL COLOR (or GridTexture, ImageTexture)", true,
+     [](SceneValues& v, Sphere& b) { b.texture = v.texture(); }},
     {"center", "center X Y Z", true, [](SceneValues& v, Sphere& b) { b.center = v.vector(); }},
     {"radius", "radius NUMBER", true,
-     [](SceneValues& v, Sphere& b) { b.radius = v.number("radius", positive_length); }},
+     [](SceneValues& v, Sphere& b) { b.radius = v.number("the radius", positive_length); }},
     {"refraction_index", "refraction_index INDEX", false,
      [](SceneValues& v, Sphere& b) { b.refraction_index = v.refraction_index(); }},
 };
 
 constexpr Property<Face> face_properties[] = {
-    {"texture", "texture TEXTURE ...", true, [](SceneValues& v, Face& b) { b.texture = v.pure_texture("Face"); }},
+    {"texture", "texture PureTexture MATERIAL COLOR", true,
+     [](SceneValues& v, Face& b) { b.texture = v.pure_texture("Face"); }},
     {"a", "a X Y Z", true, [](SceneValues& v, Face& b) { b.a = v.vector(); }},
     {"b", "b X Y Z", true, [](SceneValues& v, Face& b) { b.b = v.vector(); }},
     {"c", "c X Y Z", true, [](SceneValues& v, Face& b) { b.c = v.vector(); }},
 };
 
 constexpr Property<Mesh> mesh_properties[] = {
-    {"texture", "texture TEXTURE ...", true, [](SceneValues& v, Mesh& b) { b.texture = v.pure_texture("Mesh"); }},
+    {"texture", "texture PureTexture MATERIAL COLOR", true,
+     [](SceneValues& v, Mesh& b) { b.texture = v.pure_texture("Mesh"); }},
     {"file", "file NAME", true, [](SceneValues& v, Mesh& b) { b.file = v.file(b.where); }},
     {"center", "center X Y Z", true, [](SceneValues& v, Mesh& b) { b.center = v.vector(); }},
-    {"radius", "radius NUMBER", true, [](SceneValues& v, Mesh& b) { b.radius = v.number("radius", positive_length); }},
-    {"smooth", "smooth true|false", false, [](SceneValues& v, Mesh& b) { b.smooth = v.boolean("choice"); }},
+    {"radius", "radius NUMBER", true,
+     [](SceneValues& v, Mesh& b) { b.radius = v.number("the radius", positive_length); }},
+    {"smooth", "smooth true|false", false, [](SceneValues& v, Mesh& b) { b.smooth = v.boolean("the choice"); }},
 };
 
 constexpr std::string_view block_names[] = {"Viewer", "Light", "Plane", "Sphere", "Face", "Mesh"};
 
 bool is_block_name(std::string_view word) { return std::ranges::find(block_names, word) != std::end(block_names); }
+
+// A line of one word that is near a block's name, or begins with a capital as only blocks do.
+bool looks_like_block(const SceneLine& line) {
+    const std::string_view word = line.words.front().text;
+    return line.words.size() == 1 && !word.empty() &&
+           ((word[0] >= 'A' && word[0] <= 'Z') || nearest_word(word, block_names));
+}
 
 // The blocks that have a property of this name: "Sphere, Mesh"; empty for none.
 std::string owners_of(std::string_view name) {
@@ -149,8 +162,8 @@ class Parser {
     bool read_block(const Property<Block> (&properties)[N], Block& block, Seen<N>& seen);
     template <class Block, std::size_t N>
     bool read_property(const Property<Block> (&properties)[N], Block& block, Seen<N>& seen);
-    template <std::size_t N, class Block>
-    void report_unknown(const Property<Block> (&properties)[N], std::string_view block);
+    template <class Block, std::size_t N>
+    void report_unknown(const Property<Block> (&properties)[N], std::string_view block, Seen<N>& seen);
     template <class Block, std::size_t N>
     bool report_missing(const Property<Block> (&properties)[N], const Seen<N>& seen, const Place& name,
                         std::string_view block);
@@ -172,7 +185,8 @@ class Parser {
     NamedFiles files_;
     SceneReport report_;
     Scene scene_;
-    std::optional<Place> viewer_;     // the Viewer block's name
+    std::optional<Place> viewer_;  // the Viewer block's name
+    bool viewer_misspelt_ = false;
     std::uint64_t light_points_ = 0;  // so far
 };
 
@@ -195,16 +209,19 @@ bool Parser::read_property(const Property<Block> (&properties)[N], Block& block,
     return false;
 }
 
-template <std::size_t N, class Block>
-void Parser::report_unknown(const Property<Block> (&properties)[N], std::string_view block) {
+template <class Block, std::size_t N>
+void Parser::report_unknown(const Property<Block> (&properties)[N], std::string_view block, Seen<N>& seen) {
     std::vector<std::string_view> names;
     for (const auto& p : properties) names.push_back(p.name);
-    const std::string owners = owners_of(first().text);
-    const std::string what = owners.empty() ? "unknown property " + quoted(first().text)
-                                            : "a " + std::string(block) + " has no " + quoted(first().text);
-    std::string expected = suggestion(first().text, names);
-    if (!owners.empty()) expected = "it belongs to " + owners + "; a " + std::string(block) + " has " + listed(names);
-    report_.error(place_of(line_, first()), what, expected);
+    const Place place = place_of(line_, first());
+    if (const std::string owners = owners_of(first().text); !owners.empty())
+        return report_.error(place, "a " + std::string(block) + " has no " + quoted(first().text),
+                             "it belongs to " + owners + "; a " + std::string(block) + " has " + listed(names));
+    report_.error(place, "unknown property " + quoted(first().text), suggestion(first().text, names));
+    // What is misspelt here is not missing as well.
+    const auto meant = nearest_word(first().text, names);
+    for (std::size_t i = 0; meant && i < N; ++i)
+        if (names[i] == *meant && seen[i].number == 0) seen[i] = place;
 }
 
 template <class Block, std::size_t N>
@@ -231,11 +248,8 @@ bool Parser::read_block(const Property<Block> (&properties)[N], Block& block, Se
                       "a block's name stands alone on its line; its properties follow, one a line");
     while (advance() && !is_block_name(first().text)) {
         if (read_property(properties, block, seen)) continue;
-        std::vector<std::string_view> known(std::begin(block_names), std::end(block_names));
-        for (const auto& p : properties) known.push_back(p.name);
-        const auto near = nearest_word(first().text, known);
-        if (line_.words.size() == 1 && near && is_block_name(*near)) break;  // a misspelt block
-        report_unknown(properties, kind);
+        if (looks_like_block(line_)) break;
+        report_unknown(properties, kind, seen);
     }
     return !report_missing(properties, seen, name, kind) && report_.count() == errors_before;
 }
@@ -302,6 +316,7 @@ void Parser::read_plane() {
 void Parser::report_stray_line() {
     const Place place = place_of(line_, first());
     const std::string owners = owners_of(first().text);
+    viewer_misspelt_ |= nearest_word(first().text, block_names) == block_names[0];
     if (owners.empty())
         report_.error(place, "unknown block " + quoted(first().text), suggestion(first().text, block_names));
     else
@@ -335,7 +350,7 @@ void Parser::read_any_block() {
 
 void Parser::check_whole_scene() {
     if (report_.full()) return;
-    if (!viewer_)
+    if (!viewer_ && !viewer_misspelt_)
         report_.error_of_file("no Viewer in this scene",
                               "a scene needs a Viewer with geo, center, target, up and fovy");
     if (report_.count() > 0) return;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -41,16 +42,16 @@ std::string_view without_plus(std::string_view text) {
     return text;
 }
 
-// `value` in the shortest form that reads back: "1e-12", "16384".
+// `value` in the shortest form that reads back: "1e-12", "1e12", "16384".
 std::string shortest(double value) {
     std::array<char, 32> buffer{};
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-    return {buffer.data(), end};
+    return {buffer.data(), std::remove(buffer.data(), end, '+')};
 }
 
 std::string spoken(Range range) {
-    if (range.open) return "a number above " + shortest(range.least) + " and below " + shortest(range.most);
-    return "a number from " + shortest(range.least) + " to " + shortest(range.most);
+    if (range.open) return "expected a number above " + shortest(range.least) + " and below " + shortest(range.most);
+    return "expected a number from " + shortest(range.least) + " to " + shortest(range.most);
 }
 
 bool contains(Range range, double value) {
@@ -62,7 +63,8 @@ bool contains(Range range, double value) {
 const Word* SceneValues::take(std::string_view name) {
     if (failed_) return nullptr;
     if (more()) return &line_.words[next_++];
-    fail(line_.words.front(), quoted(line_.words.front().text) + " lacks its " + std::string(name), "");
+    const std::string property = quoted(line_.words.front().text);
+    fail(line_.words.front(), next_ == 1 ? property + " has no value" : property + " lacks " + std::string(name), "");
     return nullptr;
 }
 
@@ -78,11 +80,13 @@ int SceneValues::integer(std::string_view name, int least, int most) {
     const std::string_view text = without_plus(word->text);
     long long value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const std::string range = "expected a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+    const auto range = [&] {
+        return "expected a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+    };
     if (end != text.data() + text.size() || error == std::errc::invalid_argument || word->quoted)
-        fail(*word, quoted(word->text) + " is not a whole number", range);
+        fail(*word, quoted(word->text) + " is not a whole number", range());
     else if (error != std::errc{} || value < least || value > most)
-        fail(*word, quoted(word->text) + " is out of range for the " + std::string(name), range);
+        fail(*word, quoted(word->text) + " is out of range for " + std::string(name), range());
     return failed_ ? least : static_cast<int>(value);
 }
 
@@ -92,15 +96,14 @@ double SceneValues::number(std::string_view name, Range range) {
     const std::string_view text = without_plus(word->text);
     double value = 0;
     const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
-    const std::string expected = "expected " + spoken(range);
     if (error != std::errc{} || end != text.data() + text.size() || word->quoted) {
         const bool comma = text.find(',') != std::string_view::npos;
         fail(*word, quoted(word->text) + " is not a number",
-             comma ? "write numbers with a point and blanks between them: 0.5 1 2" : expected);
+             comma ? "write numbers with a point and blanks between them: 0.5 1 2" : spoken(range));
     } else if (std::isnan(value) || text.find_first_of("iI") != std::string_view::npos) {
-        fail(*word, quoted(word->text) + " is not a finite number", expected);
+        fail(*word, quoted(word->text) + " is not a finite number", spoken(range));
     } else if (!contains(range, value)) {
-        fail(*word, quoted(word->text) + " is out of range for the " + std::string(name), expected);
+        fail(*word, quoted(word->text) + " is out of range for " + std::string(name), spoken(range));
     }
     return failed_ ? range.most : value;
 }
@@ -123,12 +126,12 @@ Value SceneValues::one_of(std::string_view name, std::string_view kind, std::spa
     return otherwise;
 }
 
-glm::dvec3 SceneValues::color() { return one_of<glm::dvec3>("color", "a color", colors, glm::dvec3{1}); }
+glm::dvec3 SceneValues::color() { return one_of<glm::dvec3>("a color", "a color", colors, glm::dvec3{1}); }
 
 bool SceneValues::boolean(std::string_view name) { return one_of<bool>(name, "true or false", booleans, false); }
 
 double SceneValues::refraction_index() {
-    return one_of<double>("refraction index", "a refraction index", refraction_indices, 1.0);
+    return one_of<double>("a refraction index", "a refraction index", refraction_indices, 1.0);
 }
 
 Material SceneValues::material() {
@@ -137,12 +140,12 @@ Material SceneValues::material() {
         for (std::size_t i = 0; i < std::size(materials); ++i) table[i] = {materials[i].name, &materials[i]};
         return table;
     }();
-    return *one_of<const Material*>("material", "a material", known, &materials[0]);
+    return *one_of<const Material*>("a material", "a material", known, &materials[0]);
 }
 
 Texture SceneValues::texture() {
     Texture texture;
-    const auto pattern = one_of<Pattern>("texture", "a texture", patterns, Pattern::pure);
+    const auto pattern = one_of<Pattern>("a texture", "a texture", patterns, Pattern::pure);
     if (failed_) return texture;
     form_ = pattern == Pattern::pure   ? "texture PureTexture MATERIAL COLOR"
             : pattern == Pattern::grid ? "texture GridTexture MATERIAL DENSITY"
@@ -153,12 +156,12 @@ Texture SceneValues::texture() {
             texture.pattern = PureTexture{color()};
             break;
         case Pattern::grid:
-            texture.pattern = GridTexture{integer("density", 1, largest_texture)};
+            texture.pattern = GridTexture{integer("the density", 1, largest_texture)};
             break;
         case Pattern::image: {
             ImageTexture image;
             image.file = file(image.where);
-            if (!failed_ && more()) image.size = integer("size", 1, largest_texture);
+            if (!failed_ && more()) image.size = integer("the size", 1, largest_texture);
             texture.pattern = std::move(image);
         }
     }
@@ -175,7 +178,7 @@ Texture SceneValues::pure_texture(std::string_view block) {
 }
 
 std::filesystem::path SceneValues::file(SourceLocation& where) {
-    const Word* word = take("file");
+    const Word* word = take("a file");
     if (!word) return {};
     where = report_.location(place_of(line_, *word));
     if (line_.open_quote && word == &line_.words.back()) {
@@ -183,7 +186,11 @@ std::filesystem::path SceneValues::file(SourceLocation& where) {
         return {};
     }
     const NamedFiles::Found& found = files_.find(word->text);
-    if (!found.problem.empty()) fail(*word, quoted(word->text) + " " + found.problem, found.advice);
+    const bool blanks =
+        !word->quoted && more() && !std::isdigit(static_cast<unsigned char>(line_.words[next_].text[0]));
+    if (!found.problem.empty())
+        fail(*word, quoted(word->text) + " " + found.problem,
+             blanks ? "put a name with blanks in double quotes" : found.advice);
     return found.path;
 }
 

@@ -35,7 +35,7 @@ std::optional<std::string_view> nearest_word(std::string_view word, std::span<co
     std::size_t least = 0;
     for (const std::string_view candidate : known) {
         const std::size_t distance = edit_distance(word, candidate);
-        const std::size_t allowed = std::max(word.size(), candidate.size()) / 3;
+        const std::size_t allowed = std::min<std::size_t>((std::max(word.size(), candidate.size()) + 1) / 3, 3);
         if (distance <= allowed && (!best || distance < least)) {
             best = candidate;
             least = distance;

@@ -13,7 +13,7 @@ namespace raywalk {
 // ignored).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-// The known word nearest to `word`, if it is near enough to be a slip: at most one edit in three letters.
+// The known word nearest to `word`, if it is near enough to be a slip: about one edit in three letters, three at most.
 std::optional<std::string_view> nearest_word(std::string_view word, std::span<const std::string_view> known);
 
 // "did you mean 'X'?", or else "expected one of A, B, C".
