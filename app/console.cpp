@@ -88,7 +88,9 @@ void print_result(std::string_view text) {
 
 std::string duration_text(double seconds) {
     char text[64];
-    if (seconds < 9.995)
+    if (seconds < 0.0995)
+        std::snprintf(text, sizeof text, "%.1f ms", seconds * 1000);
+    else if (seconds < 9.995)
         std::snprintf(text, sizeof text, "%.2f s", seconds);
     else if (seconds < 59.95)
         std::snprintf(text, sizeof text, "%.1f s", seconds);

@@ -29,7 +29,7 @@ void print_diagnostics(std::span<const Diagnostic> diagnostics);
 // To stdout; throws WorkError when it is closed or full.
 void print_result(std::string_view text);
 
-// "0.26 s", "12.3 s", "3 min 5 s", "1 h 2 min".
+// "8.1 ms", "0.26 s", "12.3 s", "3 min 5 s", "1 h 2 min".
 std::string duration_text(double seconds);
 // "1 sample", "2 samples", "10,000 samples".
 std::string count_text(std::uint64_t count, std::string_view singular, std::string_view plural = {});

@@ -105,7 +105,7 @@ int main(int count, char** arguments) {
     try {
         return run(std::vector<std::string>(arguments + std::min(count, 1), arguments + count), arguments);
     } catch (const UsageError& error) {
-        print_error(std::string(error.what()) + "\nraywalk --help shows what can be said");
+        print_error(std::string(error.what()) + "\nraywalk --help lists every option");
         return exit_usage;
     } catch (const InputError& error) {
         print_diagnostics(error.diagnostics());

@@ -30,7 +30,11 @@ void write_error(const std::string& text) {
 
 std::string remaining_text(double fraction, double elapsed_seconds) {
     if (fraction <= 0 || fraction >= 1) return {};
-    return duration_text(elapsed_seconds / fraction * (1 - fraction)) + " left";
+    const double remaining = elapsed_seconds / fraction * (1 - fraction);
+    if (remaining > 9.5) return duration_text(std::round(remaining)) + " left";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f s left", remaining);  // more digits would only flicker
+    return text;
 }
 
 }  // namespace

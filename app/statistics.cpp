@@ -7,7 +7,7 @@ namespace raywalk {
 
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 json counts_of(const LoadedScene& loaded) {
     const CompiledScene& scene = loaded.compiled;

@@ -11,10 +11,10 @@ namespace raywalk {
 
 // Scene counts, load and build times, tree statistics, and of the renderer so far: rays by kind, rays per second of
 // `trace_seconds`, threads, instruction set, dropped samples. A walk adds its frame times under "frames".
-nlohmann::json statistics_of(const Options& options, const LoadedScene& loaded, const Renderer& renderer,
-                             double trace_seconds);
+nlohmann::ordered_json statistics_of(const Options& options, const LoadedScene& loaded, const Renderer& renderer,
+                                     double trace_seconds);
 
 // To stdout for "-", else to the file, whole or not at all. Throws WorkError.
-void write_statistics(const std::filesystem::path& file, const nlohmann::json& statistics);
+void write_statistics(const std::filesystem::path& file, const nlohmann::ordered_json& statistics);
 
 }  // namespace raywalk
