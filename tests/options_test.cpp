@@ -134,7 +134,7 @@ TEST(Options, ASlipIsRecognised) {
     EXPECT_EQ(error_of({"a.scene", "--rendr=x.png"}), "unknown option '--rendr': did you mean '--render'?");
     EXPECT_EQ(error_of({"a.scene", "-x"}), "unknown option '-x'");
     EXPECT_THAT(error_of({"a.scene", "--projection", "ortographic"}), HasSubstr("did you mean 'orthographic'?"));
-    EXPECT_THAT(error_of({"a.scene", "--accelerator", "octree"}), HasSubstr("kdtree, bvh"));
+    EXPECT_THAT(error_of({"a.scene", "--accelerator", "grid"}), HasSubstr("kdtree, bvh"));
 }
 
 TEST(Options, WhatIsMissingIsNamed) {
