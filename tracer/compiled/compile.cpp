@@ -135,7 +135,7 @@ void compile_mesh(const MeshSpan& span, std::int32_t surface, CompiledScene& com
                   std::vector<TriangleCorners>& corners) {
     const std::vector<glm::vec3> positions = placed_positions(*span.triangles, span.mesh->center, span.mesh->radius);
     const auto& faces = span.triangles->faces;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (faces.size() >= worth_threads)
     for (std::size_t f = 0; f < faces.size(); ++f) {
         TriangleCorners& triangle = corners[span.first + f];
         for (std::size_t corner = 0; corner < 3; ++corner) triangle.p[corner] = positions[faces[f][corner]];

@@ -6,9 +6,7 @@
 
 namespace raywalk {
 
-float limited(double coordinate) {
-    return static_cast<float>(std::clamp(coordinate, -largest_length, largest_length));
-}
+float limited(double coordinate) { return static_cast<float>(std::clamp(coordinate, -largest_length, largest_length)); }
 glm::vec3 limited(const glm::dvec3& point) { return {limited(point.x), limited(point.y), limited(point.z)}; }
 
 namespace {
@@ -51,7 +49,7 @@ std::vector<glm::vec3> placed_positions(const TriangleMesh& mesh, const glm::dve
     const glm::dvec3 mean = vertex_mean(mesh);
     const double scale = radius / farthest_from(mesh, mean);
     std::vector<glm::vec3> placed(mesh.positions.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (placed.size() >= worth_threads)
     for (std::size_t i = 0; i < placed.size(); ++i)
         placed[i] = limited(center + (glm::dvec3(mesh.positions[i]) - mean) * scale);
     return placed;
@@ -60,7 +58,7 @@ std::vector<glm::vec3> placed_positions(const TriangleMesh& mesh, const glm::dve
 std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh) {
     const std::size_t faces = mesh.faces.size();
     std::vector<glm::dvec3> face_normals(faces);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (faces >= worth_threads)
     for (std::size_t f = 0; f < faces; ++f) {
         const auto& [a, b, c] = mesh.faces[f];
         face_normals[f] = face_direction(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
@@ -71,7 +69,7 @@ std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh) {
         for (const std::uint32_t vertex : mesh.faces[f]) sums[vertex] += face_normals[f];
 
     std::vector<VertexNormals> normals(faces);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (faces >= worth_threads)
     for (std::size_t f = 0; f < faces; ++f)
         for (std::size_t corner = 0; corner < 3; ++corner) {
             glm::dvec3 n(0);

@@ -11,6 +11,9 @@
 
 namespace raywalk {
 
+// Loops of fewer turns than this run on one thread: waking the others takes longer.
+inline constexpr std::size_t worth_threads = 4096;
+
 // Brought to at most `largest_length` in magnitude: what is farther away could not be seen anyway.
 float limited(double coordinate);
 glm::vec3 limited(const glm::dvec3& point);

@@ -1,11 +1,9 @@
 #include "tracer/ground/whole_file.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <string>
 #include <system_error>
 
@@ -25,10 +23,10 @@ fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.
 
 // Where the name leads: renaming over a link would replace the link, not what it points to.
 fs::path followed(const fs::path& file) {
-    std::error_code ignored;
-    if (!fs::is_symlink(file, ignored)) return file;
-    const fs::path target = fs::weakly_canonical(file, ignored);
-    return ignored ? file : target;
+    std::error_code error;
+    if (!fs::is_symlink(file, error)) return file;
+    const fs::path target = fs::weakly_canonical(file, error);
+    return error ? file : target;
 }
 
 bool is_special(const fs::path& file) {
@@ -36,62 +34,106 @@ bool is_special(const fs::path& file) {
     return fs::exists(file, ignored) && !fs::is_regular_file(file, ignored) && !fs::is_directory(file, ignored);
 }
 
-// A new, empty file beside `file`: ".name-XXXXXX.ext".
-fs::path new_file_beside(const fs::path& file) {
-    const std::string extension = file.extension().string();
-    std::string name = (folder_of(file) / ("." + file.stem().string() + "-XXXXXX" + extension)).string();
-    const int descriptor = mkstemps(name.data(), static_cast<int>(extension.size()));
-    if (descriptor < 0) fail(file, errno);
-    // mkstemps makes files that only their owner may read; a picture gets the usual rights.
-    const mode_t mask = umask(0);
-    umask(mask);
-    fchmod(descriptor, 0666 & ~mask);
-    close(descriptor);
-    return name;
+// An open file that is closed in the end.
+class Descriptor {
+  public:
+    explicit Descriptor(int number) : number_(number) {}
+    ~Descriptor() {
+        if (number_ >= 0) ::close(number_);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    [[nodiscard]] int number() const { return number_; }
+
+    // 0, or the error.
+    [[nodiscard]] int write(std::string_view bytes) const {
+        while (!bytes.empty()) {
+            const ssize_t count = ::write(number_, bytes.data(), bytes.size());
+            if (count < 0 && errno == EINTR) continue;
+            if (count < 0) return errno;
+            bytes.remove_prefix(static_cast<std::size_t>(count));
+        }
+        return 0;
+    }
+    [[nodiscard]] int flush_to_disk() const {
+        if (fsync(number_) == 0 || errno == EINVAL || errno == ENOTSUP) return 0;
+        return errno;
+    }
+    [[nodiscard]] int close() {
+        const int error = ::close(number_) == 0 ? 0 : errno;
+        number_ = -1;
+        return error;
+    }
+
+  private:
+    int number_;
+};
+
+// Tries names ".NAME-0.part", ... beside `file` until one is free; `make` returns 0 or -1 and errno.
+template <class Make>
+fs::path free_name_beside(const fs::path& file, const Make& make) {
+    for (int i = 0;; ++i) {
+        const fs::path name = folder_of(file) / ("." + file.filename().string() + "-" + std::to_string(getpid()) + "-" +
+                                                 std::to_string(i) + ".part");
+        if (make(name) >= 0) return name;
+        if (errno != EEXIST) return {};
+    }
 }
 
-// Data first, then the name: after a power failure the name stands for the old file or the whole new one.
-void flush_to_disk(const fs::path& file, const fs::path& written) {
-    const int descriptor = open(written.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) fail(file, errno);
-    const int error = fsync(descriptor) == 0 ? 0 : errno;
-    close(descriptor);
-    if (error != 0 && error != EINVAL && error != ENOTSUP) fail(file, error);
+// Gives the written file the name of `target`. Returns 0, or the error, and then there is no new name.
+int rename_to(const fs::path& name, const fs::path& target) {
+    if (rename(name.c_str(), target.c_str()) == 0) return 0;
+    const int error = errno;
+    unlink(name.c_str());
+    return error;
+}
+
+void write_directly(const fs::path& file, const fs::path& target, std::string_view bytes) {
+    Descriptor descriptor(open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    if (descriptor.number() < 0) fail(file, errno);
+    if (const int error = descriptor.write(bytes)) fail(file, error);
+    if (const int error = descriptor.close()) fail(file, error);
+}
+
+// True when done, false where the file system has no files without a name.
+bool write_without_name(const fs::path& file, const fs::path& target, std::string_view bytes) {
+    const Descriptor descriptor(open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
+    if (descriptor.number() < 0) return false;
+    if (const int error = descriptor.write(bytes)) fail(file, error);
+    if (const int error = descriptor.flush_to_disk()) fail(file, error);
+    const std::string itself = "/proc/self/fd/" + std::to_string(descriptor.number());
+    // A file without a name can be given a free one only, hence the second step.
+    const fs::path name = free_name_beside(target, [&](const fs::path& free) {
+        return linkat(AT_FDCWD, itself.c_str(), AT_FDCWD, free.c_str(), AT_SYMLINK_FOLLOW);
+    });
+    if (name.empty()) return false;  // no /proc here
+    if (const int error = rename_to(name, target)) fail(file, error);
+    return true;
+}
+
+void write_with_name(const fs::path& file, const fs::path& target, std::string_view bytes) {
+    int number = -1;
+    const fs::path name = free_name_beside(target, [&](const fs::path& free) {
+        return number = open(free.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    });
+    if (name.empty()) fail(file, errno);
+    Descriptor descriptor(number);
+    int error = descriptor.write(bytes);
+    if (error == 0) error = descriptor.flush_to_disk();
+    if (const int close_error = descriptor.close(); error == 0) error = close_error;
+    if (error == 0)
+        error = rename_to(name, target);
+    else
+        unlink(name.c_str());
+    if (error != 0) fail(file, error);
 }
 
 }  // namespace
 
-void write_whole(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+void write_whole(const fs::path& file, std::string_view bytes) {
     const fs::path target = followed(file);
-    if (is_special(target)) return write(target);
-    const fs::path temporary = new_file_beside(target);
-    try {
-        write(temporary);
-        flush_to_disk(file, temporary);
-        if (rename(temporary.c_str(), target.c_str()) != 0) fail(file, errno);
-    } catch (...) {
-        unlink(temporary.c_str());
-        throw;
-    }
-}
-
-void write_whole(const fs::path& file, std::string_view text) {
-    write_whole(file, [&](const fs::path& path) {
-        const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-        if (descriptor < 0) fail(file, errno);
-        std::string_view rest = text;
-        while (!rest.empty()) {
-            const ssize_t count = ::write(descriptor, rest.data(), rest.size());
-            if (count < 0 && errno == EINTR) continue;
-            if (count < 0) {
-                const int error = errno;
-                close(descriptor);
-                fail(file, error);
-            }
-            rest.remove_prefix(static_cast<std::size_t>(count));
-        }
-        if (close(descriptor) != 0) fail(file, errno);
-    });
+    if (is_special(target)) return write_directly(file, target, bytes);
+    if (!write_without_name(file, target, bytes)) write_with_name(file, target, bytes);
 }
 
 std::string obstacle_to_writing(const fs::path& file) {

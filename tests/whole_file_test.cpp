@@ -1,0 +1,85 @@
+#include "tracer/ground/whole_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/support/process.h"
+#include "tracer/ground/error.h"
+
+namespace raywalk {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_file;
+using test::TemporaryFolder;
+using test::write_file;
+
+std::size_t files_in(const fs::path& folder) {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(WholeFile, MakesAndReplacesFilesAndLeavesNothingElse) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "a.txt";
+    write_whole(file, "one");
+    EXPECT_EQ(read_file(file), "one");
+    write_whole(file, std::string(100'000, 'x'));
+    EXPECT_EQ(read_file(file), std::string(100'000, 'x'));
+    write_whole(file, "");
+    EXPECT_EQ(read_file(file), "");
+    EXPECT_EQ(files_in(folder.path()), 1u);
+}
+
+TEST(WholeFile, NewFilesHaveTheUsualRights) {
+    const TemporaryFolder folder;
+    const mode_t mask = umask(022);
+    write_whole(folder.path() / "a.txt", "one");
+    umask(mask);
+    struct stat status {};
+    ASSERT_EQ(stat((folder.path() / "a.txt").c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0644u);
+}
+
+TEST(WholeFile, FollowsALinkInsteadOfReplacingIt) {
+    const TemporaryFolder folder;
+    write_file(folder.path() / "real.txt", "old");
+    fs::create_symlink("real.txt", folder.path() / "link.txt");
+    write_whole(folder.path() / "link.txt", "new");
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "link.txt"));
+    EXPECT_EQ(read_file(folder.path() / "real.txt"), "new");
+}
+
+TEST(WholeFile, DevicesAreWrittenToAndTheirErrorsReported) {
+    write_whole("/dev/null", "gone");
+    try {
+        write_whole("/dev/full", "too much");
+        FAIL();
+    } catch (const WorkError& error) {
+        EXPECT_STREQ(error.what(), "cannot write '/dev/full': No space left on device");
+    }
+    EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST(WholeFile, FailuresNameTheFileAndLeaveNothing) {
+    const TemporaryFolder folder;
+    EXPECT_THROW(write_whole(folder.path() / "missing" / "a.txt", "x"), WorkError);
+    fs::create_directory(folder.path() / "b.txt");
+    EXPECT_THROW(write_whole(folder.path() / "b.txt", "x"), WorkError);
+    EXPECT_EQ(files_in(folder.path()), 1u);
+}
+
+TEST(WholeFile, ObstaclesAreKnownBeforehand) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(obstacle_to_writing(folder.path() / "a.txt"), "");
+    EXPECT_EQ(obstacle_to_writing("/dev/null"), "");
+    EXPECT_THAT(obstacle_to_writing(folder.path() / "missing" / "a.txt"), testing::HasSubstr("does not exist"));
+    EXPECT_EQ(obstacle_to_writing(folder.path()), "it is a folder");
+    write_file(folder.path() / "file", "");
+    EXPECT_THAT(obstacle_to_writing(folder.path() / "file" / "a.txt"), testing::HasSubstr("is not a folder"));
+    EXPECT_EQ(files_in(folder.path()), 1u);
+}
+
+}  // namespace
+}  // namespace raywalk
