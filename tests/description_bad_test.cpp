@@ -28,8 +28,10 @@ std::string said_of(const fs::path& file) {
     std::vector<Diagnostic> warnings;
     std::string text;
     try {
-        if (file.extension() == ".obj") read_obj(file, {}, warnings);
-        else read_scene(file, {}, warnings);
+        if (file.extension() == ".obj")
+            read_obj(file, {}, warnings);
+        else
+            read_scene(file, {}, warnings);
         text = "read without an error";
     } catch (const InputError& error) {
         text = error.what();
