@@ -32,10 +32,16 @@ struct Box {
         upper = _mm_max_ps(upper, high);
     }
     void extend(const Box& other) { extend(other.lower, other.upper); }
+    void store(float low[3], float high[3]) const {
+        alignas(16) float four[4];
+        _mm_store_ps(four, lower);
+        std::copy(four, four + 3, low);
+        _mm_store_ps(four, upper);
+        std::copy(four, four + 3, high);
+    }
     [[nodiscard]] Bounds bounds() const {
-        alignas(16) float low[4], high[4];
-        _mm_store_ps(low, lower);
-        _mm_store_ps(high, upper);
+        float low[3], high[3];
+        store(low, high);
         return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
     }
 };
@@ -166,9 +172,10 @@ class Builder {
         const auto count = static_cast<std::uint32_t>(tree_.primitives.size());
         const Extent extent = extent_of(0, count);
         tree_.root = {0, count, 0, extent.box.bounds()};
-        grow(tree_.root, extent, 0);
+        errors_.guard([&] { tree_.root.middle = grow(0, count, extent, 0); });
         tree_.binned = binned_;
     }
+    void rethrow() const { errors_.rethrow(); }
 
   private:
     [[nodiscard]] Extent extent_of(std::uint32_t begin, std::uint32_t end) const {
@@ -180,90 +187,106 @@ class Builder {
         return extent;
     }
 
-    // Splits a range until every part is a leaf.
-    void grow(Range& range, const Extent& extent, std::uint32_t depth);
-    // Moves what lies below the plane to the front; returns where the rest begins.
-    std::uint32_t partition(const Range& range, const Grid& grid, const Plane& plane, Extent& lower, Extent& upper);
-    [[nodiscard]] Bins bins_of(const Range& range, const Grid& grid) const;
+    // Splits the range until every part is a leaf; returns its middle, 0 where it is a leaf itself.
+    std::uint32_t grow(std::uint32_t begin, std::uint32_t end, const Extent& extent, std::uint32_t depth);
+    // Moves what lies below the plane to the front; returns where the rest begins, and the boxes of the centroids.
+    std::uint32_t partition(std::uint32_t begin, std::uint32_t end, const Grid& grid, const Plane& plane,
+                            Box& lower_centroids, Box& upper_centroids);
+    [[nodiscard]] Bins bins_of(std::uint32_t begin, std::uint32_t end, const Grid& grid) const;
 
     BinaryTree& tree_;
     Primitive* primitives_;
     std::atomic<std::uint64_t> binned_{0};
+    TaskErrors errors_;
 };
 
-Bins Builder::bins_of(const Range& range, const Grid& grid) const {
+Bins Builder::bins_of(std::uint32_t begin, std::uint32_t end, const Grid& grid) const {
     Bins bins;
-    if (range.size() < 2 * chunk_shapes) {
-        bins.add(primitives_ + range.begin, primitives_ + range.end, grid);
+    if (end - begin < 2 * chunk_shapes) {
+        bins.add(primitives_ + begin, primitives_ + end, grid);
         return bins;
     }
-    const std::uint32_t chunks = (range.size() + chunk_shapes - 1) / chunk_shapes;
-    AlignedVector<Bins> parts(chunks);
-    for (std::uint32_t c = 0; c < chunks; ++c) {
-#pragma omp task shared(parts, grid, range) firstprivate(c)
-        parts[c].add(primitives_ + range.begin + c * chunk_shapes,
-                     primitives_ + std::min(range.begin + (c + 1) * chunk_shapes, range.end), grid);
+    AlignedVector<Bins> parts((end - begin + chunk_shapes - 1) / chunk_shapes);
+    for (std::uint32_t c = 0; c < parts.size(); ++c) {
+#pragma omp task shared(parts, grid) firstprivate(begin, end, c)
+        parts[c].add(primitives_ + begin + c * chunk_shapes,
+                     primitives_ + std::min(begin + (c + 1) * chunk_shapes, end), grid);
     }
 #pragma omp taskwait
     for (const Bins& part : parts) bins.add(part);
     return bins;
 }
 
-std::uint32_t Builder::partition(const Range& range, const Grid& grid, const Plane& plane, Extent& lower,
-                                 Extent& upper) {
-    const auto below = [&](__m128 center) {
-        alignas(16) std::int32_t bin[4];
-        _mm_store_si128(reinterpret_cast<__m128i*>(bin), grid.bins(center));
-        return bin[plane.axis] < plane.bin;
-    };
-    Primitive* left = primitives_ + range.begin;
-    Primitive* right = primitives_ + range.end;  // one past the last not yet known
-    while (left < right) {
-        const __m128 low = lower_of(*left), high = upper_of(*left), center = centroid(low, high);
-        if (below(center)) {
-            lower.extend(low, high, center);
-            ++left;
-        } else {
-            upper.extend(low, high, center);
-            --right;
-            const __m128 swap_low = lower_of(*right), swap_high = upper_of(*right);
-            _mm_store_ps(right->lower, low);
-            _mm_store_ps(right->upper, high);
-            _mm_store_ps(left->lower, swap_low);
-            _mm_store_ps(left->upper, swap_high);
-        }
+std::uint32_t Builder::partition(std::uint32_t begin, std::uint32_t end, const Grid& grid, const Plane& plane,
+                                 Box& lower_centroids, Box& upper_centroids) {
+    // Without a branch that could be mispredicted: every primitive changes places with the first of the upper side,
+    // and the side grows or not. The other side's minimum sees NaN (all bits set) as its first operand and keeps its
+    // second.
+    alignas(16) std::int32_t first_upper[4];
+    std::fill(std::begin(first_upper), std::end(first_upper), plane.bin);
+    const __m128i limit = _mm_load_si128(reinterpret_cast<const __m128i*>(first_upper));
+    Primitive* upper = primitives_ + begin;
+    Box below_box, above_box;
+    for (Primitive* p = upper; p != primitives_ + end; ++p) {
+        const __m128 low = lower_of(*p), high = upper_of(*p), center = centroid(low, high);
+        const __m128i below = _mm_cmplt_epi32(grid.bins(center), limit);
+        const __m128 is_below = _mm_castsi128_ps(plane.axis == 0   ? _mm_shuffle_epi32(below, 0x00)
+                                                 : plane.axis == 1 ? _mm_shuffle_epi32(below, 0x55)
+                                                                   : _mm_shuffle_epi32(below, 0xaa));
+        const __m128 not_above = is_below, not_below = _mm_xor_ps(is_below, _mm_castsi128_ps(_mm_set1_epi32(-1)));
+        const __m128 center_below = _mm_or_ps(center, not_below), center_above = _mm_or_ps(center, not_above);
+        below_box.lower = _mm_min_ps(center_below, below_box.lower);
+        below_box.upper = _mm_max_ps(center_below, below_box.upper);
+        above_box.lower = _mm_min_ps(center_above, above_box.lower);
+        above_box.upper = _mm_max_ps(center_above, above_box.upper);
+        _mm_store_ps(p->lower, lower_of(*upper));
+        _mm_store_ps(p->upper, upper_of(*upper));
+        _mm_store_ps(upper->lower, low);
+        _mm_store_ps(upper->upper, high);
+        upper += _mm_movemask_ps(is_below) & 1;
     }
-    return static_cast<std::uint32_t>(left - primitives_);
+    lower_centroids = below_box;
+    upper_centroids = above_box;
+    return static_cast<std::uint32_t>(upper - primitives_);
 }
 
-void Builder::grow(Range& range, const Extent& extent, std::uint32_t depth) {
-    if (range.size() <= leaf_shapes) return;
+std::uint32_t Builder::grow(std::uint32_t begin, std::uint32_t end, const Extent& extent, std::uint32_t depth) {
+    const std::uint32_t size = end - begin;
+    if (size <= leaf_shapes) return 0;
     Extent lower, upper;
-    const Grid grid(extent.centroids);
     Plane plane;
-    if (depth + std::bit_width(range.size()) < deepest_binary_level) plane = cheapest(bins_of(range, grid), extent.box);
-    if (plane.axis >= 0) {
-        range.middle = partition(range, grid, plane, lower, upper);
-    } else {
+    std::uint32_t middle = 0;
+    if (depth + std::bit_width(size) < deepest_binary_level) {
+        const Grid grid(extent.centroids);
+        const Bins bins = bins_of(begin, end, grid);
+        plane = cheapest(bins, extent.box);
+        if (plane.axis >= 0) {
+            for (int i = 0; i < bin_count; ++i) (i < plane.bin ? lower : upper).box.extend(bins.box[plane.axis][i]);
+            middle = partition(begin, end, grid, plane, lower.centroids, upper.centroids);
+        }
+    }
+    if (middle == 0) {
         // Centroids that no bin tells apart, or a chain too deep.
-        if (range.size() <= largest_leaf) return;
-        range.middle = range.begin + range.size() / 2;
-        lower = extent_of(range.begin, range.middle);
-        upper = extent_of(range.middle, range.end);
+        if (size <= largest_leaf) return 0;
+        middle = begin + size / 2;
+        lower = extent_of(begin, middle);
+        upper = extent_of(middle, end);
     }
-    binned_.fetch_add(range.size(), std::memory_order_relaxed);
-    Halves& halves = tree_.split_at[range.middle];
-    halves.lower = {range.begin, range.middle, 0, lower.box.bounds()};
-    halves.upper = {range.middle, range.end, 0, upper.box.bounds()};
-    if (range.size() < task_shapes) {
-        grow(halves.lower, lower, depth + 1);
-        grow(halves.upper, upper, depth + 1);
-        return;
+    binned_.fetch_add(size, std::memory_order_relaxed);
+    Halves& halves = tree_.split_at[middle];
+    lower.box.store(halves.lower[0], halves.upper[0]);
+    upper.box.store(halves.lower[1], halves.upper[1]);
+    if (size < task_shapes) {
+        halves.middle[0] = grow(begin, middle, lower, depth + 1);
+        halves.middle[1] = grow(middle, end, upper, depth + 1);
+        return middle;
     }
-#pragma omp task shared(halves, lower) firstprivate(depth)
-    grow(halves.lower, lower, depth + 1);
-    grow(halves.upper, upper, depth + 1);
+#pragma omp task shared(halves, lower) firstprivate(begin, middle, depth)
+    errors_.guard([&] { halves.middle[0] = grow(begin, middle, lower, depth + 1); });
+    // No exception may leave before the task is done with `lower`.
+    errors_.guard([&] { halves.middle[1] = grow(middle, end, upper, depth + 1); });
 #pragma omp taskwait
+    return middle;
 }
 
 }  // namespace
@@ -271,11 +294,12 @@ void Builder::grow(Range& range, const Extent& extent, std::uint32_t depth) {
 BinaryTree build_binary(AlignedVector<Primitive> primitives) {
     BinaryTree tree;
     tree.primitives = std::move(primitives);
-    tree.split_at.resize(tree.primitives.size());
+    tree.split_at = std::make_unique_for_overwrite<Halves[]>(tree.primitives.size());
     Builder builder(tree);
 #pragma omp parallel
 #pragma omp single
     builder.build();
+    builder.rethrow();
     return tree;
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "tracer/ground/aligned.h"
 #include "tracer/ground/bounds.h"
@@ -29,17 +29,28 @@ struct Range {
     [[nodiscard]] bool leaf() const { return middle == 0; }
 };
 
-// The children of a split range.
+// What is known of the two halves of a split range. Without initial values: the array of them is sparse.
 struct Halves {
-    Range lower, upper;
+    float lower[2][3], upper[2][3];  // boxes
+    std::uint32_t middle[2];         // see Range
 };
 
 // The split of a range lies at its middle: no two ranges share one, so tasks write without asking each other.
 struct BinaryTree {
     AlignedVector<Primitive> primitives;
-    std::vector<Halves> split_at;  // by middle
+    std::unique_ptr<Halves[]> split_at;  // by middle
     Range root;
     std::uint64_t binned = 0;  // primitives binned and moved, over all ranges
+
+    // The lower (0) or upper (1) half of a range that is not a leaf.
+    [[nodiscard]] Range half(const Range& range, int side) const {
+        const Halves& halves = split_at[range.middle];
+        const float *low = halves.lower[side], *high = halves.upper[side];
+        return {side == 0 ? range.begin : range.middle,
+                side == 0 ? range.middle : range.end,
+                halves.middle[side],
+                {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}};
+    }
 };
 
 inline constexpr std::uint32_t largest_leaf = 8 * 16;  // of shapes whose centroids coincide; else one block of 16

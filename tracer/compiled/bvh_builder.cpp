@@ -88,10 +88,9 @@ class Collapse {
             const auto largest = std::max_element(parts.begin(), parts.end(),
                                                   [](const Part& a, const Part& b) { return a.area < b.area; });
             if (largest == parts.end() || largest->area < 0) return;
-            const BinaryTree* tree = largest->tree;
-            const Halves& halves = tree->split_at[largest->range.middle];
-            *largest = part(tree, halves.lower);
-            parts.push_back(part(tree, halves.upper));
+            const Part opened = *largest;
+            *largest = part(opened.tree, opened.tree->half(opened.range, 0));
+            parts.push_back(part(opened.tree, opened.tree->half(opened.range, 1)));
         }
     }
 
