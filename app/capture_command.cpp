@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/frame_writer.h"
+#include "app/interrupts.h"
+#include "app/presenter.h"
+#include "app/statistics.h"
+#include "tracer/description/image.h"
+#include "tracer/ground/stopwatch.h"
+#include "tracer/kernels/kernels.h"
+
+namespace raywalk {
+namespace {
+
+// "walk-%04d.png", 7 -> "walk-0007.png".
+std::filesystem::path frame_name(const std::string& pattern, std::size_t number) {
+    const std::size_t percent = pattern.find('%'), end = pattern.find('d', percent);
+    const std::string digits = pattern.substr(percent + 1, end - percent - 1);
+    char text[64];
+    std::snprintf(text, sizeof text, "%0*zu", digits.empty() ? 1 : std::stoi(digits), number);
+    return pattern.substr(0, percent) + text + pattern.substr(end + 1);
+}
+
+// A walk without a window: the same views, the same frames, drawn into memory.
+class Capture {
+  public:
+    Capture(const Options& options, const LoadedScene& loaded)
+        : renderer_(loaded.compiled, select_kernels(options.isa), options.threads),
+          samples_(samples_per_pixel(options, loaded.scene)) {
+        // As in the window: exposure is that of the first full picture, whatever keys follow.
+        const std::optional<float> fixed = options.exposure.value_or(Exposure{}).value;
+        if (!fixed) trace(opening_view(options, loaded.scene), 1);
+        exposure_ = fixed.value_or(normalizing_exposure(renderer_.film()));
+    }
+
+    // Everything of the view that there is time for before an interrupt.
+    void trace(const View& view) { trace(view, samples_); }
+    void save(const std::filesystem::path& file);
+
+    [[nodiscard]] const Renderer& renderer() const { return renderer_; }
+    [[nodiscard]] double traced_seconds() const { return traced_seconds_; }
+    [[nodiscard]] const std::string& device_name() const { return presenter_.device_name(); }
+
+  private:
+    void trace(const View& view, std::uint32_t samples) {
+        const Stopwatch watch;
+        renderer_.set_view(view);
+        renderer_.render_until(samples, interrupted());
+        traced_seconds_ += watch.seconds();
+    }
+
+    OffscreenPresenter presenter_;  // first: without a device there is no use in tracing
+    Renderer renderer_;
+    std::uint32_t samples_;
+    float exposure_ = 1;
+    double traced_seconds_ = 0;
+};
+
+void Capture::save(const std::filesystem::path& file) {
+    const Film& film = renderer_.film();
+    if (is_float_extension(file)) {
+        write_image(file, mean_radiance(film));
+        return;
+    }
+    publish_film(presenter_.exchange(), presenter_.preferred_content(), {.samples = renderer_.samples()}, film,
+                 renderer_.kernels(), exposure_, renderer_.threads());
+    const std::vector<std::uint32_t> words = presenter_.present(film.width, film.height);
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(words.size() * 3);
+    for (const std::uint32_t word : words)
+        for (const int shift : {16, 8, 0}) rgb.push_back(static_cast<std::uint8_t>(word >> shift));
+    write_image(file, film.width, film.height, rgb);
+}
+
+int capture(const Options& options, const LoadedScene& loaded) {
+    const bool quiet = options.verbosity == Verbosity::quiet;
+    const GracefulInterrupts graceful;
+    const Stopwatch watch;
+    Capture capture(options, loaded);
+    if (options.verbosity == Verbosity::verbose) print_note("Vulkan device: " + capture.device_name());
+
+    View view = opening_view(options, loaded.scene);
+    std::size_t frames = 0;
+    for (const WalkKey key : options.keys) {
+        if (key == WalkKey::quit || interrupted()) break;
+        view.camera = pressed(view.camera, key);
+        if (!options.frames) continue;
+        capture.trace(view);
+        if (interrupted()) break;  // OUT holds what there is of this frame
+        capture.save(frame_name(*options.frames, frames++));
+    }
+    if (!interrupted()) capture.trace(view);
+    capture.save(options.output);
+    if (options.stats) {
+        nlohmann::json statistics = statistics_of(options, loaded, capture.renderer(), capture.traced_seconds());
+        statistics["device"] = capture.device_name();
+        write_statistics(*options.stats, statistics);
+    }
+    if (interrupted()) {
+        print_error("interrupted: '" + options.output.string() + "' holds what there was of the picture");
+        return exit_interrupted;
+    }
+    if (!quiet)
+        print_note("captured " + options.output.string() +
+                   (frames > 0 ? " and " + count_text(frames, "frame") : std::string()) + ", " +
+                   count_text(samples_per_pixel(options, loaded.scene), "sample") + " a pixel, in " +
+                   duration_text(watch.seconds()));
+    return exit_done;
+}
+
+}  // namespace
+
+int capture_command(const Options& options, LoadedScene&& loaded) {
+    try {
+        return capture(options, loaded);
+    } catch (const NoDisplayError& error) {
+        print_error(error.what());
+        return exit_no_display;
+    }
+}
+
+}  // namespace raywalk

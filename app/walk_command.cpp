@@ -1,0 +1,89 @@
+#include <algorithm>
+
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/interrupts.h"
+#include "app/statistics.h"
+#include "app/walk_loop.h"
+#include "tracer/kernels/kernels.h"
+#include "tracer/rendering/camera.h"
+
+namespace raywalk {
+namespace {
+
+constexpr std::uint32_t default_sample_limit = 4096;  // a pixel: no eye sees another one
+
+// Milliseconds below which so many of a hundred lie.
+nlohmann::json percentiles(std::vector<double> seconds) {
+    nlohmann::json result = {{"count", seconds.size()}};
+    if (seconds.empty()) return result;
+    std::ranges::sort(seconds);
+    const auto at = [&](double share) {
+        return 1000 * seconds[static_cast<std::size_t>(share * static_cast<double>(seconds.size() - 1) + 0.5)];
+    };
+    result["p50_ms"] = at(0.5);
+    result["p90_ms"] = at(0.9);
+    result["p99_ms"] = at(0.99);
+    result["max_ms"] = seconds.back() * 1000;
+    return result;
+}
+
+nlohmann::json walk_statistics(const Options& options, const LoadedScene& loaded, const Renderer& renderer,
+                               const RenderThread& render, const WalkRecord& record, const std::string& device) {
+    nlohmann::json statistics = statistics_of(options, loaded, renderer, render.traced_seconds());
+    statistics["frames"] = {{"moving", percentiles(render.moving_frame_seconds())},
+                            {"answer", percentiles(record.answer_seconds)},
+                            {"present", percentiles(record.present_seconds)}};
+    statistics["device"] = device;
+    return statistics;
+}
+
+int walk(const Options& options, const LoadedScene& loaded) {
+    const GracefulInterrupts graceful;
+    const std::string name = options.scene.filename().string();
+    Window window(picture_size(options, loaded.scene), "Raywalk - " + name);
+    Presenter presenter(window.handle());
+    if (options.verbosity == Verbosity::verbose) print_note("Vulkan device: " + presenter.device_name());
+    if (options.verbosity != Verbosity::quiet)
+        print_note("W S A D walk, arrows turn, T changes the projection, [ ] the exposure, Q quits");
+
+    const std::uint32_t limit = options.samples_per_pixel.value_or(default_sample_limit);
+    Options of_window = options;  // a window that the screen has no room for is smaller than the picture
+    of_window.size = window.pixels();
+    View opening = opening_view(of_window, loaded.scene);
+    opening.settings.one_shot = limit == 1;
+    View view = opening;
+    view.camera = pressed(view.camera, options.keys);
+
+    Renderer renderer(loaded.compiled, select_kernels(options.isa), options.threads);
+    RenderThread render(renderer, presenter.exchange(),
+                        {.opening = opening,
+                         .exposure = options.exposure.value_or(Exposure{}).value,
+                         .sample_limit = limit,
+                         .content = presenter.preferred_content(),
+                         .frame_ready = Window::wake},
+                        view);
+    const WalkRecord record = walk_loop(window, presenter, render,
+                                        {.name = name,
+                                         .view = view,
+                                         .sample_limit = limit,
+                                         .quit_at_once = std::ranges::count(options.keys, WalkKey::quit) > 0});
+    render.stop();
+    if (options.stats)
+        write_statistics(*options.stats,
+                         walk_statistics(options, loaded, renderer, render, record, presenter.device_name()));
+    return record.interrupted ? exit_interrupted : exit_done;
+}
+
+}  // namespace
+
+int walk_command(const Options& options, LoadedScene&& loaded) {
+    try {
+        return walk(options, loaded);
+    } catch (const NoDisplayError& error) {
+        print_error(error.what());
+        return exit_no_display;
+    }
+}
+
+}  // namespace raywalk
