@@ -11,8 +11,8 @@ constexpr const char* head = R"(# The sculpture, and a field of balls around it 
 # Made by scenes/generate; changes here are lost at the next build.
 Viewer
 geo     1280 720
-center  -7.0 6.5 15.0
-target  0.0 3.2 0.0
+center  -8.0 8.0 17.0
+target  0.4 3.6 0.0
 up      0.0 1.0 0.0
 fovy    40
 
@@ -20,17 +20,17 @@ fovy    40
 Light
 origin      -14.0 20.0 12.0
 color       WHITE
-intensity   0.75
+intensity   1.35
 
 Light
 origin      -14.0 20.0 12.0
 color       YELLOW
-intensity   0.15
+intensity   0.22
 
 Light
 origin      16.0 9.0 20.0
 color       WHITE
-intensity   0.22
+intensity   0.6
 
 Plane
 texture ImageTexture FLOOR ../textures/wood.png 8

@@ -173,6 +173,17 @@ Sample marble(glm::vec2 p) {
     return {color, 0.0f};
 }
 
+// A plane's u picks the row of an image and its v the column. On a wall that faces z, u runs to the left and v down, so
+// that a pattern with an upright stands there when its picture lies.
+Picture laid_on_its_side(const Picture& picture) {
+    Picture turned = picture;
+    const auto side = static_cast<std::size_t>(picture.side);
+    for (std::size_t row = 0; row < side; ++row)
+        for (std::size_t column = 0; column < side; ++column)
+            std::copy_n(&picture.rgb[(column * side + side - 1 - row) * 3], 3, &turned.rgb[(row * side + column) * 3]);
+    return turned;
+}
+
 }  // namespace
 
 Picture texture(std::string_view name, int side) {
@@ -203,7 +214,7 @@ Picture texture(std::string_view name, int side) {
         for (int channel = 0; channel < 3; ++channel)
             picture.rgb[i * 3 + channel] = static_cast<std::uint8_t>(color[channel]);
     }
-    return picture;
+    return name == "brick" ? laid_on_its_side(picture) : picture;
 }
 
 }  // namespace generate
