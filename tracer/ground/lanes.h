@@ -195,6 +195,11 @@ HWY_INLINE Real load_unaligned(const float* p) {
     RAYWALK_EACH(i) r.v[i] = hn::LoadU(RealTag(), p + i * register_lanes);
     return r;
 }
+HWY_INLINE Int load_unaligned(const std::int32_t* p) {
+    Int r;
+    RAYWALK_EACH(i) r.v[i] = hn::LoadU(IntTag(), p + i * register_lanes);
+    return r;
+}
 HWY_INLINE void store(Real a, float* p) { RAYWALK_EACH(i) hn::Store(a.v[i], RealTag(), p + i * register_lanes); }
 HWY_INLINE void store(Int a, std::int32_t* p) { RAYWALK_EACH(i) hn::Store(a.v[i], IntTag(), p + i * register_lanes); }
 HWY_INLINE void store_unaligned(Real a, float* p) {

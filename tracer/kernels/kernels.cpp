@@ -18,28 +18,41 @@ namespace raywalk {
 namespace HWY_NAMESPACE {
 namespace {
 
+bool left_out(const RayArrays& rays, std::size_t i) { return !(rays.t_max[i] > rays.t_min[i]); }
+
 Ray ray_of(const RayArrays& rays, std::size_t i) {
     return {{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
             {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
-            0,
+            rays.t_min[i],
             rays.t_max[i]};
 }
 
-// Rays [first, first + 64) of the arrays, as many as there are; returns which.
-std::uint64_t fill_beam(const RayArrays& rays, std::size_t first, BeamRays& beam) {
-    const std::size_t count = rays.size() - first < beam_rays ? rays.size() - first : beam_rays;
-    for (std::size_t i = 0; i < count; ++i) {
-        for (int axis = 0; axis < 3; ++axis) beam.direction[axis][i] = rays.direction[axis][first + i];
-        beam.t_min[i] = 0;
-        beam.t_max[i] = rays.t_max[first + i];
+// Copies numbers between arrays and the aligned arrays of a beam, in registers where there are 64 of them.
+template <class T>
+HWY_INLINE void copy(const T* from, T* to, std::size_t count) {
+    if (count != beam_rays) {
+        std::copy_n(from, count, to);
+        return;
     }
+    for (int at = 0; at < beam_rays; at += lanes) store_unaligned(load_unaligned(from + at), to + at);
+}
+
+// Rays [first, first + 64) of the arrays, as many as there are; returns which are not left out.
+std::uint64_t fill_beam(const RayArrays& rays, std::size_t first, BeamRays& beam) {
+    const std::size_t count = std::min<std::size_t>(rays.size() - first, beam_rays);
+    for (int axis = 0; axis < 3; ++axis) copy(rays.direction[axis].data() + first, beam.direction[axis], count);
+    copy(rays.t_min.data() + first, beam.t_min, count);
+    copy(rays.t_max.data() + first, beam.t_max, count);
     for (int axis = 0; axis < 3; ++axis) beam.origin[axis] = rays.origin[axis][0];
-    return count == beam_rays ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+    std::uint64_t active = 0;
+    for (int at = 0; at < beam_rays; at += lanes)
+        active |= static_cast<std::uint64_t>(bits(load(beam.t_max + at) > load(beam.t_min + at))) << at;
+    return count == beam_rays ? active : active & ((std::uint64_t{1} << count) - 1);
 }
 
 void intersect_one_by_one(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const RayHit hit = intersect_ray(scene, ray_of(rays, i));
+        const RayHit hit = left_out(rays, i) ? RayHit{rays.t_max[i], 0, 0, -1} : intersect_ray(scene, ray_of(rays, i));
         hits.t[i] = hit.t;
         hits.u[i] = hit.u;
         hits.v[i] = hit.v;
@@ -51,28 +64,34 @@ void intersect_as_beams(const CompiledScene& scene, const RayArrays& rays, HitAr
     BeamRays beam = {};
     BeamHits found;
     for (std::size_t first = 0; first < rays.size(); first += beam_rays) {
+        const std::size_t count = std::min<std::size_t>(rays.size() - first, beam_rays);
         const std::uint64_t active = fill_beam(rays, first, beam);
-        intersect_beam(scene, beam, active, found);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(std::popcount(active)); ++i) {
-            hits.t[first + i] = found.t[i];
-            hits.u[first + i] = found.u[i];
-            hits.v[first + i] = found.v[i];
-            hits.id[first + i] = found.id[i];
+        if (active == 0) {
+            std::fill_n(hits.id.begin() + static_cast<std::ptrdiff_t>(first), count, -1);
+            continue;
         }
+        intersect_beam(scene, beam, active, found);
+        copy(found.t, hits.t.data() + first, count);
+        copy(found.u, hits.u.data() + first, count);
+        copy(found.v, hits.v.data() + first, count);
+        copy(found.id, hits.id.data() + first, count);
     }
 }
 
 void occluded_one_by_one(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits.id[i] = occluded_ray(scene, ray_of(rays, i)) ? 0 : -1;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        hits.id[i] = !left_out(rays, i) && occluded_ray(scene, ray_of(rays, i)) ? 0 : -1;
 }
 
 void occluded_as_beams(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
     BeamRays beam = {};
     for (std::size_t first = 0; first < rays.size(); first += beam_rays) {
         const std::uint64_t active = fill_beam(rays, first, beam);
-        const std::uint64_t occluded = occluded_beam(scene, beam, active);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(std::popcount(active)); ++i)
-            hits.id[first + i] = (occluded >> i & 1) != 0 ? 0 : -1;
+        const std::uint64_t found = active == 0 ? 0 : occluded_beam(scene, beam, active);
+        HWY_ALIGN std::int32_t ids[beam_rays];
+        for (int at = 0; at < beam_rays; at += lanes)
+            store(select(mask_of_bits(static_cast<std::uint32_t>(found >> at) & 0xffffu), Int(0), Int(-1)), ids + at);
+        copy(ids, hits.id.data() + first, std::min<std::size_t>(rays.size() - first, beam_rays));
     }
 }
 
@@ -106,7 +125,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace raywalk {
 
-RayArrays::RayArrays(std::size_t n) : t_max(n, __builtin_inff()) {
+RayArrays::RayArrays(std::size_t n) : t_min(n, 0), t_max(n, __builtin_inff()) {
     for (int axis = 0; axis < 3; ++axis) {
         origin[axis].resize(n);
         direction[axis].resize(n);

@@ -50,14 +50,15 @@ using TileScratchPointer = std::unique_ptr<TileScratch, TileScratchDeleter>;
 TileScratchPointer make_tile_scratch();
 
 // Rays and hits for tests and benchmarks, one array a component. Directions need not be unit; t is in their length.
+// Rays with t_max <= t_min are left out: they hit nothing.
 struct RayArrays {
-    std::vector<float> origin[3], direction[3], t_max;
+    std::vector<float> origin[3], direction[3], t_min, t_max;  // t_min starts as 0, t_max as infinity
     explicit RayArrays(std::size_t n = 0);
     [[nodiscard]] std::size_t size() const { return t_max.size(); }
 };
 struct HitArrays {
-    std::vector<float> t, u, v;     // u, v: barycentric weights of corners 1 and 2 (triangles only)
-    std::vector<std::int32_t> id;   // shape id, -1 for none
+    std::vector<float> t, u, v;    // u, v: barycentric weights of corners 1 and 2 (triangles only)
+    std::vector<std::int32_t> id;  // shape id, -1 for none
     explicit HitArrays(std::size_t n = 0);
 };
 
@@ -75,7 +76,7 @@ struct Kernels {
     void (*intersect)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
     // The same for rays of one common origin (that of ray 0), traced as beams of 64.
     void (*intersect_beam)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
-    // id = 0 where anything lies in (0, t_max), else -1.
+    // id = 0 where anything lies in (t_min, t_max), else -1.
     void (*occluded)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
     void (*occluded_beam)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
 };
