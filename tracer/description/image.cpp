@@ -108,6 +108,13 @@ const Extension& require_extension(const fs::path& file) {
     throw WorkError("cannot write '" + file.string() + "': its extension is none of .png .jpg .exr .pfm .hdr .tif");
 }
 
+constexpr const char* readable_formats = "expected a PNG, JPEG, TIFF, EXR or HDR file";
+
+InputError refusal(const fs::path& file, const SourceLocation& where, const std::string& problem, std::string advice) {
+    const SourceLocation place = where.file.empty() ? SourceLocation{file.string()} : where;
+    return InputError(error_at(place, "image " + raywalk::quoted(file.native()) + " " + problem, std::move(advice)));
+}
+
 void write_encoded(const fs::path& file, const std::string& problem, const std::vector<unsigned char>& bytes) {
     if (!problem.empty()) throw WorkError("cannot write '" + file.string() + "': " + problem);
     write_whole(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
@@ -115,33 +122,31 @@ void write_encoded(const fs::path& file, const std::string& problem, const std::
 
 }  // namespace
 
-Image read_image(const fs::path& file, const Limits& limits, const SourceLocation& where) {
-    const auto refuse = [&](const std::string& problem, std::string advice) {
-        const SourceLocation place = where.file.empty() ? SourceLocation{file.string()} : where;
-        throw InputError(error_at(place, "image " + raywalk::quoted(file.native()) + " " + problem, std::move(advice)));
+Image decode_image(std::string_view bytes, const fs::path& file, const Limits& limits, const SourceLocation& where) {
+    const auto format = format_of(bytes);
+    if (!format) throw refusal(file, where, "is none that a scene may show", readable_formats);
+    std::string advice = "save it again with another program, or try another image";
+    const auto size_problem = [&](std::uint64_t width, std::uint64_t height) -> std::string {
+        const std::uint64_t pixels = width * height;  // each below 2^31
+        const bool packed = pixels > (1ull << 22) + limits.image_pixels_per_byte * bytes.size();
+        if (!packed && pixels <= limits.image_pixels) return {};
+        advice = how_to_raise(limits, packed ? &Limits::image_pixels_per_byte : &Limits::image_pixels);
+        return "it claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels, " +
+               (packed ? "more than so small a file can hold" : "which is too large");
     };
     Image image;
-    try {
-        const FileBytes bytes = read_file_bytes(file, limits.image_bytes);
-        const auto format = format_of(bytes.text());
-        if (!format) refuse("is none that a scene may show", "expected a PNG, JPEG, TIFF, EXR or HDR file");
-        std::string advice = "save it again with another program, or try another image";
-        const auto refusal = [&](std::uint64_t width, std::uint64_t height) -> std::string {
-            const std::uint64_t pixels = width * height;  // each below 2^31
-            const bool packed = pixels > (1ull << 22) + limits.image_pixels_per_byte * bytes.text().size();
-            if (!packed && pixels <= limits.image_pixels) return {};
-            advice = how_to_raise(limits, packed ? &Limits::image_pixels_per_byte : &Limits::image_pixels);
-            return "it claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels, " +
-                   (packed ? "more than so small a file can hold" : "which is too large");
-        };
-        const std::string problem =
-            codecs().decode(*format, {bytes.text().data(), bytes.text().size()}, refusal, image);
-        if (!problem.empty()) refuse("cannot be read: " + printable(problem), advice);
-    } catch (const FileProblem& problem) {
-        refuse(problem.what(), problem.too_large ? how_to_raise(limits, &Limits::image_bytes)
-                                                 : "expected a PNG, JPEG, TIFF, EXR or HDR file");
-    }
+    const std::string problem = codecs().decode(*format, {bytes.data(), bytes.size()}, size_problem, image);
+    if (!problem.empty()) throw refusal(file, where, "cannot be read: " + printable(problem), advice);
     return image;
+}
+
+Image read_image(const fs::path& file, const Limits& limits, const SourceLocation& where) {
+    try {
+        return decode_image(read_file_bytes(file, limits.image_bytes).text(), file, limits, where);
+    } catch (const FileProblem& problem) {
+        throw refusal(file, where, problem.what(),
+                      problem.too_large ? how_to_raise(limits, &Limits::image_bytes) : readable_formats);
+    }
 }
 
 bool is_image_extension(const fs::path& file) { return extension_of(file) != nullptr; }

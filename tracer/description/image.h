@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tracer/description/limits.h"
@@ -21,6 +22,9 @@ struct Image {
 
 // Reads PNG, JPEG, TIFF, EXR or HDR (told by content, nothing else is tried). Throws InputError placed at `where`.
 Image read_image(const std::filesystem::path& file, const Limits& limits, const SourceLocation& where);
+// The same for a file already in memory; `file` names it in messages.
+Image decode_image(std::string_view bytes, const std::filesystem::path& file, const Limits& limits,
+                   const SourceLocation& where);
 
 // Linear RGB, 3 floats a pixel, row 0 on top.
 struct FloatImage {

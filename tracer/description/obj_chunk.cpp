@@ -96,9 +96,7 @@ std::string_view word_at(const char* at, const char* end) {
 }
 
 ObjRemark ChunkParser::remark(const char* at, std::string what, std::string expected) const {
-    const char* stop =
-        line_start_ + std::string_view(line_start_, static_cast<std::size_t>(end_ - line_start_)).find('\n');
-    if (stop < line_start_) stop = end_;
+    const char* stop = std::find(line_start_, end_, '\n');
     const char* text_end = stop;
     while (text_end > line_start_ && is_blank(text_end[-1])) --text_end;
     return {out_.lines,

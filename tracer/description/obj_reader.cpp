@@ -1,7 +1,5 @@
 #include "tracer/description/obj_reader.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
