@@ -1,0 +1,202 @@
+// Traversal against a loop over all shapes in double precision, on every instruction set and both hierarchies.
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "tests/traversal_scenes.h"
+
+namespace raywalk::traversal_test {
+namespace {
+
+// The loop over all shapes. A float tracer may be right in two ways where a ray passes within rounding of an edge, so
+// the answer is an interval: the nearest hit for certain, and every hit that is possible.
+struct Answer {
+    double certain = std::numeric_limits<double>::infinity();  // nearest t of a shape hit well inside its edge
+    std::vector<double> possible;                              // every t of a shape hit, edges included
+};
+
+constexpr double edge_doubt = 3e-5;
+
+void consider(Answer& answer, const ExactHit& hit, double t_max) {
+    const double doubt = 1e-5 * std::max(1.0, std::fabs(hit.t));
+    if (!(hit.t > -doubt) || !(hit.t < t_max + doubt) || !(hit.margin > -edge_doubt)) return;
+    answer.possible.push_back(hit.t);
+    if (hit.margin > edge_doubt && hit.t > doubt && hit.t < t_max - doubt) answer.certain = std::min(answer.certain, hit.t);
+}
+
+Answer naive_answer(const ShapeSet& set, glm::dvec3 o, glm::dvec3 d, double t_max) {
+    Answer answer;
+    for (const TriangleCorners& triangle : set.triangles) {
+        ExactHit hit = exact_triangle(triangle, o, d);
+        // A sliver or a grazing ray: rounding moves the hit by more than its weights say.
+        const glm::dvec3 e1 = triangle.p[1] - triangle.p[0], e2 = triangle.p[2] - triangle.p[0];
+        const double longest = std::max({glm::length(e1), glm::length(e2), glm::length(e1 - e2)});
+        const double fullness = glm::length(glm::cross(e1, e2)) / (longest * longest + 1e-300);
+        const double facing = std::fabs(glm::dot(glm::cross(e1, e2), d)) / (longest * longest * glm::length(d) + 1e-300);
+        if (fullness < 1e-3 || facing < 1e-3) {
+            if (hit.margin > -0.5) answer.possible.push_back(hit.t);
+            continue;
+        }
+        consider(answer, hit, t_max);
+    }
+    for (const SphereShape& sphere : set.spheres) {
+        consider(answer, exact_sphere(sphere, o, d, false), t_max);
+        consider(answer, exact_sphere(sphere, o, d, true), t_max);
+    }
+    for (const PlaneRecord& plane : set.planes) consider(answer, exact_plane(plane, o, d), t_max);
+    return answer;
+}
+
+// Rays of one common origin, so that both doors may take them; `narrow`: as from pixels of a picture.
+RayArrays rays_from(glm::vec3 origin, std::size_t count, Random& random, bool narrow) {
+    RayArrays rays(count);
+    glm::vec3 direction = random.direction();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i % 64 == 0) direction = random.direction();
+        glm::vec3 d = narrow ? direction + random.point(0.04f) : random.direction() * random.between(0.2f, 3.0f);
+        if (i % 16 == 3) d[i / 16 % 3] = 0;                             // in the plane of an axis
+        if (i % 64 == 7) d = {0, 0, 0}, d[i / 64 % 3] = i % 128 < 64 ? 1.0f : -1.0f;  // along an axis
+        for (int a = 0; a < 3; ++a) rays.origin[a][i] = origin[a], rays.direction[a][i] = d[a];
+        if (i % 5 == 4) rays.t_max[i] = random.between(0.5f, 15.0f);
+    }
+    return rays;
+}
+
+glm::vec3 origin_in(const ShapeSet& set, int i, Random& random) {
+    const glm::vec3 middle = set.name == "far from the origin" ? glm::vec3(3000) : glm::vec3(0);
+    if (i == 0) return middle + glm::vec3(0.25f, 0.5f, 0.125f);
+    if (i == 1 && !set.triangles.empty()) {
+        const auto& p = set.triangles[set.triangles.size() / 2].p;  // on a surface
+        return (p[0] + p[1] + p[2]) / 3.0f;
+    }
+    if (i == 2 && !set.triangles.empty()) return set.triangles.front().p[1];  // at a corner
+    return middle + random.point(i % 2 == 0 ? 5.0f : 25.0f);
+}
+
+struct Case {
+    Accelerator accelerator;
+    const Kernels* kernels;
+};
+
+class Traversal : public testing::TestWithParam<Case> {};
+
+std::vector<Case> all_cases() {
+    std::vector<Case> cases;
+    for (const Accelerator accelerator : {Accelerator::kdtree, Accelerator::bvh})
+        for (const Kernels* kernels : available_kernels()) cases.push_back({accelerator, kernels});
+    return cases;
+}
+
+void check_hits(const ShapeSet& set, const RayArrays& rays, const HitArrays& hits, const std::vector<Answer>& answers) {
+    int wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Answer& answer = answers[i];
+        if (hits.id[i] < 0) {
+            wrong += answer.certain < std::numeric_limits<double>::infinity();
+            continue;
+        }
+        const double t = hits.t[i], doubt = 2e-4 * std::max(1.0, std::fabs(t));
+        const bool exists = std::ranges::any_of(answer.possible, [&](double p) { return std::fabs(p - t) < doubt; });
+        wrong += !exists || t > answer.certain + doubt;
+    }
+    EXPECT_EQ(wrong, 0) << "of " << rays.size() << " rays in " << set.name;
+}
+
+TEST_P(Traversal, FindsTheHitsThatALoopOverAllShapesFinds) {
+    const auto [accelerator, kernels] = GetParam();
+    for (const ShapeSet& set : all_shape_sets()) {
+        const CompiledScene scene = compile_shapes(set, accelerator);
+        Random random(7);
+        for (int origin = 0; origin < 4; ++origin) {
+            const RayArrays rays = rays_from(origin_in(set, origin, random), 256, random, origin % 2 == 0);
+            std::vector<Answer> answers(rays.size());
+            for (std::size_t i = 0; i < rays.size(); ++i)
+                answers[i] = naive_answer(set, {rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
+                                          {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
+                                          rays.t_max[i]);
+            HitArrays single(rays.size()), beam(rays.size()), blocked(rays.size()), beam_blocked(rays.size());
+            kernels->intersect(scene, rays, single);
+            kernels->intersect_beam(scene, rays, beam);
+            check_hits(set, rays, single, answers);
+            check_hits(set, rays, beam, answers);
+            kernels->occluded(scene, rays, blocked);
+            kernels->occluded_beam(scene, rays, beam_blocked);
+            int disagree = 0;
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                disagree += (blocked.id[i] == 0) != (single.id[i] >= 0);
+                disagree += (beam_blocked.id[i] == 0) != (beam.id[i] >= 0);
+            }
+            EXPECT_EQ(disagree, 0) << "any hit against nearest hit in " << set.name;
+        }
+    }
+}
+
+TEST_P(Traversal, LetsNoRayOutOfAClosedMesh) {
+    const auto [accelerator, kernels] = GetParam();
+    const ShapeSet set{.name = "closed", .triangles = icosphere(4)};
+    const CompiledScene scene = compile_shapes(set, accelerator);
+    Random random(8);
+    // At every corner and at points on every edge, exactly where a crack would be.
+    std::vector<glm::vec3> targets;
+    for (const auto& [p] : set.triangles) {
+        targets.push_back(p[0]);
+        const float s = random.between(0, 1);
+        targets.push_back(p[0] * s + p[1] * (1 - s));
+    }
+    for (const glm::vec3 origin : {glm::vec3(0), glm::vec3(0.3f, -0.2f, 0.5f), glm::vec3(-0.7f, 0.1f, 0.1f)}) {
+        RayArrays rays(targets.size());
+        for (std::size_t i = 0; i < targets.size(); ++i)
+            for (int a = 0; a < 3; ++a) rays.origin[a][i] = origin[a], rays.direction[a][i] = targets[i][a] - origin[a];
+        HitArrays hits(rays.size());
+        kernels->intersect(scene, rays, hits);
+        EXPECT_EQ(std::ranges::count(hits.id, -1), 0) << "single rays";
+        kernels->intersect_beam(scene, rays, hits);
+        EXPECT_EQ(std::ranges::count(hits.id, -1), 0) << "beams";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllKernels, Traversal, testing::ValuesIn(all_cases()), [](const auto& info) {
+    return std::string(info.param.accelerator == Accelerator::bvh ? "Bvh_" : "KdTree_") +
+           std::string(info.param.kernels->name);
+});
+
+void expect_same_bits(const HitArrays& a, const HitArrays& b, const std::string& what) {
+    int differ = 0;
+    for (std::size_t i = 0; i < a.t.size(); ++i)
+        differ += a.id[i] != b.id[i] || std::bit_cast<std::uint32_t>(a.t[i]) != std::bit_cast<std::uint32_t>(b.t[i]) ||
+                  (a.id[i] >= 0 && (a.u[i] != b.u[i] || a.v[i] != b.v[i]));
+    EXPECT_EQ(differ, 0) << what;
+}
+
+// Both hierarchies, and the instruction sets that round alike, agree to the last bit.
+TEST(TraversalBits, AreTheSameForBothHierarchiesAndEqualRounding) {
+    for (const ShapeSet& set : all_shape_sets()) {
+        const CompiledScene kd = compile_shapes(set, Accelerator::kdtree), bvh = compile_shapes(set, Accelerator::bvh);
+        Random random(9);
+        for (int origin = 0; origin < 6; ++origin) {
+            const RayArrays rays = rays_from(origin_in(set, origin, random), 2048, random, origin % 2 == 0);
+            std::vector<HitArrays> of_kernels;
+            for (const Kernels* kernels : available_kernels()) {
+                HitArrays single(rays.size()), beam(rays.size()), other(rays.size());
+                kernels->intersect(kd, rays, single);
+                kernels->intersect(bvh, rays, other);
+                expect_same_bits(single, other, "single rays, kd-tree against BVH, " + set.name);
+                kernels->intersect_beam(kd, rays, beam);
+                kernels->intersect_beam(bvh, rays, other);
+                expect_same_bits(beam, other, "beams, kd-tree against BVH, " + set.name);
+                of_kernels.push_back(single);
+                of_kernels.push_back(beam);
+            }
+            // Fused (avx512, avx2) and not fused (sse4, scalar) come in this order, best first.
+            const auto kernels = available_kernels();
+            const auto fused = [](const Kernels* k) { return k->name == "avx512" || k->name == "avx2"; };
+            for (std::size_t i = 0; i + 1 < kernels.size(); ++i)
+                for (std::size_t door = 0; door < 2 && fused(kernels[i]) == fused(kernels[i + 1]); ++door)
+                    expect_same_bits(of_kernels[2 * i + door], of_kernels[2 * i + 2 + door],
+                                     std::string(kernels[i]->name) + " against the next, " + set.name);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace raywalk::traversal_test
