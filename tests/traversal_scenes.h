@@ -50,11 +50,11 @@ struct Random {
 // Unit sphere of 20 * 4^levels triangles around the origin: closed, so that no ray may slip out.
 inline std::vector<TriangleCorners> icosphere(int levels) {
     const float g = (1 + std::sqrt(5.0f)) / 2;
-    const glm::vec3 v[12] = {{-1, g, 0}, {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
+    const glm::vec3 v[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                              {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-    const int f[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                          {11, 10, 2}, {10, 7, 6}, {7, 1, 8},   {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                          {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    const int f[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                          {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                          {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     std::vector<TriangleCorners> mesh;
     for (const auto& t : f)
         mesh.push_back({{glm::normalize(v[t[0]]), glm::normalize(v[t[1]]), glm::normalize(v[t[2]])}});
@@ -87,7 +87,8 @@ inline ShapeSet triangle_soup(int count, float size, unsigned seed) {
     Random random(seed);
     for (int i = 0; i < count; ++i) {
         const glm::vec3 center = random.point(10);
-        set.triangles.push_back({{center + random.point(size), center + random.point(size), center + random.point(size)}});
+        set.triangles.push_back(
+            {{center + random.point(size), center + random.point(size), center + random.point(size)}});
     }
     return set;
 }
@@ -135,7 +136,8 @@ inline std::vector<ShapeSet> all_shape_sets() {
     {
         ShapeSet set{.name = "far from the origin"};
         Random random(6);
-        for (const auto& [p] : icosphere(3)) set.triangles.push_back({{p[0] + 3000.0f, p[1] + 3000.0f, p[2] + 3000.0f}});
+        for (const auto& [p] : icosphere(3))
+            set.triangles.push_back({{p[0] + 3000.0f, p[1] + 3000.0f, p[2] + 3000.0f}});
         for (int i = 0; i < 50; ++i) set.spheres.push_back({glm::vec3(3000) + random.point(5), 0.3f});
         sets.push_back(set);
     }

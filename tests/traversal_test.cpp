@@ -13,7 +13,20 @@ namespace {
 struct Answer {
     double certain = std::numeric_limits<double>::infinity();  // nearest t of a shape hit well inside its edge
     std::vector<double> possible;                              // every t of a shape hit, edges included
+    std::vector<const TriangleCorners*> slivers;               // ill-conditioned: hit or not, but only where they are
 };
+
+// How far a point is from the longest edge of a triangle.
+double distance_to_longest_edge(const TriangleCorners& triangle, glm::dvec3 point) {
+    glm::dvec3 a = triangle.p[0], b = triangle.p[1];
+    for (int i = 1; i < 3; ++i) {
+        const glm::dvec3 c = triangle.p[i], d = triangle.p[(i + 1) % 3];
+        if (glm::length(d - c) > glm::length(b - a)) a = c, b = d;
+    }
+    const double squared = glm::dot(b - a, b - a);
+    const double s = squared > 0 ? std::clamp(glm::dot(point - a, b - a) / squared, 0.0, 1.0) : 0;
+    return glm::length(point - (a + s * (b - a)));
+}
 
 constexpr double edge_doubt = 3e-5;
 
@@ -21,20 +34,20 @@ void consider(Answer& answer, const ExactHit& hit, double t_max) {
     const double doubt = 1e-5 * std::max(1.0, std::fabs(hit.t));
     if (!(hit.t > -doubt) || !(hit.t < t_max + doubt) || !(hit.margin > -edge_doubt)) return;
     answer.possible.push_back(hit.t);
-    if (hit.margin > edge_doubt && hit.t > doubt && hit.t < t_max - doubt) answer.certain = std::min(answer.certain, hit.t);
+    if (hit.margin > edge_doubt && hit.t > doubt && hit.t < t_max - doubt)
+        answer.certain = std::min(answer.certain, hit.t);
 }
 
 Answer naive_answer(const ShapeSet& set, glm::dvec3 o, glm::dvec3 d, double t_max) {
     Answer answer;
     for (const TriangleCorners& triangle : set.triangles) {
-        ExactHit hit = exact_triangle(triangle, o, d);
-        // A sliver or a grazing ray: rounding moves the hit by more than its weights say.
+        const ExactHit hit = exact_triangle(triangle, o, d);
+        // A sliver, or a ray that grazes: rounding moves the hit along the ray by more than the weights say.
         const glm::dvec3 e1 = triangle.p[1] - triangle.p[0], e2 = triangle.p[2] - triangle.p[0];
         const double longest = std::max({glm::length(e1), glm::length(e2), glm::length(e1 - e2)});
-        const double fullness = glm::length(glm::cross(e1, e2)) / (longest * longest + 1e-300);
-        const double facing = std::fabs(glm::dot(glm::cross(e1, e2), d)) / (longest * longest * glm::length(d) + 1e-300);
-        if (fullness < 1e-3 || facing < 1e-3) {
-            if (hit.margin > -0.5) answer.possible.push_back(hit.t);
+        const glm::dvec3 normal = glm::cross(e1, e2) / (longest * longest + 1e-300);
+        if (glm::length(normal) < 1e-3 || std::fabs(glm::dot(normal, d)) < 1e-3 * glm::length(d)) {
+            answer.slivers.push_back(&triangle);
             continue;
         }
         consider(answer, hit, t_max);
@@ -54,7 +67,7 @@ RayArrays rays_from(glm::vec3 origin, std::size_t count, Random& random, bool na
     for (std::size_t i = 0; i < count; ++i) {
         if (i % 64 == 0) direction = random.direction();
         glm::vec3 d = narrow ? direction + random.point(0.04f) : random.direction() * random.between(0.2f, 3.0f);
-        if (i % 16 == 3) d[i / 16 % 3] = 0;                             // in the plane of an axis
+        if (i % 16 == 3) d[i / 16 % 3] = 0;                                           // in the plane of an axis
         if (i % 64 == 7) d = {0, 0, 0}, d[i / 64 % 3] = i % 128 < 64 ? 1.0f : -1.0f;  // along an axis
         for (int a = 0; a < 3; ++a) rays.origin[a][i] = origin[a], rays.direction[a][i] = d[a];
         if (i % 5 == 4) rays.t_max[i] = random.between(0.5f, 15.0f);
@@ -96,7 +109,16 @@ void check_hits(const ShapeSet& set, const RayArrays& rays, const HitArrays& hit
             continue;
         }
         const double t = hits.t[i], doubt = 2e-4 * std::max(1.0, std::fabs(t));
-        const bool exists = std::ranges::any_of(answer.possible, [&](double p) { return std::fabs(p - t) < doubt; });
+        const glm::dvec3 point = glm::dvec3(rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]) +
+                                 t * glm::dvec3(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
+        const bool exists =
+            std::ranges::any_of(answer.possible, [&](double p) { return std::fabs(p - t) < doubt; }) ||
+            std::ranges::any_of(answer.slivers, [&](const TriangleCorners* triangle) {
+                const glm::vec3 e1 = triangle->p[1] - triangle->p[0], e2 = triangle->p[2] - triangle->p[0];
+                const float thickness = glm::length(glm::cross(e1, e2)) / (glm::length(e1) + glm::length(e2) + 1e-30f);
+                return distance_to_longest_edge(*triangle, point) <
+                       4 * thickness + 1e-2;  // e |edge| / thickness off, at worst
+            });
         wrong += !exists || t > answer.certain + doubt;
     }
     EXPECT_EQ(wrong, 0) << "of " << rays.size() << " rays in " << set.name;
@@ -111,9 +133,9 @@ TEST_P(Traversal, FindsTheHitsThatALoopOverAllShapesFinds) {
             const RayArrays rays = rays_from(origin_in(set, origin, random), 256, random, origin % 2 == 0);
             std::vector<Answer> answers(rays.size());
             for (std::size_t i = 0; i < rays.size(); ++i)
-                answers[i] = naive_answer(set, {rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
-                                          {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
-                                          rays.t_max[i]);
+                answers[i] =
+                    naive_answer(set, {rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
+                                 {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]}, rays.t_max[i]);
             HitArrays single(rays.size()), beam(rays.size()), blocked(rays.size()), beam_blocked(rays.size());
             kernels->intersect(scene, rays, single);
             kernels->intersect_beam(scene, rays, beam);

@@ -1,7 +1,7 @@
-// The SIMD vocabulary: sixteen lanes, whatever the machine. A `Real` is sixteen floats in one AVX-512 register, two AVX2,
-// four SSE4 or sixteen scalars, so that a kernel written once has one structure, and one result, on every instruction set.
-// Lane by lane the operations are IEEE single precision; only `mul_add` and its kin differ (one rounding where the
-// machine fuses: avx2, avx512; two where it does not: scalar, sse4).
+// The SIMD vocabulary: sixteen lanes, whatever the machine. A `Real` is sixteen floats in one AVX-512 register, two
+// AVX2, four SSE4 or sixteen scalars, so that a kernel written once has one structure, and one result, on every
+// instruction set. Lane by lane the operations are IEEE single precision; only `mul_add` and its kin differ (one
+// rounding where the machine fuses: avx2, avx512; two where it does not: scalar, sse4).
 //
 // Included once per target by Highway's foreach_target.h, hence the guard that toggles.
 
@@ -54,17 +54,13 @@ struct Mask {
 struct Int {
     IntRegister v[registers];
     Int() = default;
-    HWY_INLINE Int(std::int32_t value) {
-        RAYWALK_EACH(i) v[i] = hn::Set(IntTag(), value);
-    }
+    HWY_INLINE Int(std::int32_t value) { RAYWALK_EACH(i) v[i] = hn::Set(IntTag(), value); }
 };
 
 struct Real {
     RealRegister v[registers];
     Real() = default;
-    HWY_INLINE Real(float value) {
-        RAYWALK_EACH(i) v[i] = hn::Set(RealTag(), value);
-    }
+    HWY_INLINE Real(float value) { RAYWALK_EACH(i) v[i] = hn::Set(RealTag(), value); }
 };
 
 // Unary and binary operations, register by register.
@@ -262,8 +258,8 @@ HWY_INLINE Mask mask_of_bits(std::uint32_t b) {
     r.m[0].raw = static_cast<decltype(r.m[0].raw)>(b);
     return r;
 #else
-    alignas(64) static constexpr std::int32_t bit_of_lane[lanes] = {
-        1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+    alignas(64) static constexpr std::int32_t bit_of_lane[lanes] = {1,   2,   4,    8,    16,   32,   64,    128,
+                                                                    256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
     const Int lane_bit = load(bit_of_lane);
     return (Int(static_cast<std::int32_t>(b)) & lane_bit) == lane_bit;
 #endif

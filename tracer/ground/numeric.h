@@ -18,9 +18,10 @@ inline constexpr float box_padding = 3e-7f;
 // Entry and exit distances of boxes are compared with this relative slack (Ize, Robust BVH Ray Traversal, 2013).
 inline constexpr float slab_slack = 4e-7f;
 
-// Single rays accept barycentrics down to minus this, so that no ray slips between two triangles of one edge: the
-// barycentrics of the Moeller-Trumbore test carry a few e of error.
-inline constexpr float edge_slack = 5e-7f;
+// Single rays accept barycentric weights down to minus this, so that no ray slips between triangles that share an edge
+// or a corner: the Moeller-Trumbore weights are off by about e |distance| / |edge|. A triangle grows by this fraction
+// of its own size, which no picture shows.
+inline constexpr float edge_slack = 1e-5f;
 
 // A sum of three products is compared with zero with this slack, relative to the sum of their magnitudes.
 inline constexpr float sum_slack = 3e-7f;

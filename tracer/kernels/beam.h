@@ -45,11 +45,12 @@ struct alignas(64) BeamGroup {
 
 struct Beam {
     BeamGroup group[beam_groups];
-    int k, a, b;   // axes: depth, U, V
-    float sign;    // of the rays along k
+    int k, a, b;  // axes: depth, U, V
+    float sign;   // of the rays along k
     float origin[3];
-    float padding;  // of boxes, scene units
-    float u0, u1, v0, v1;      // ranges of the slopes, a hair wider
+    float padding;               // of boxes, scene units
+    float u0, u1, v0, v1;        // ranges of the slopes, a hair wider
+    float steepest;              // largest slope, in magnitude
     float depth_min, depth_max;  // where a hit would still count
     std::uint64_t active;
 };
@@ -143,6 +144,8 @@ HWY_INLINE void start_beam(const BeamRays& rays, float padding, Beam& beam) {
     }
     beam.depth_min = reduce_min(depth_min) * (1.0f - slab_slack);
     shorten_beam(beam);
+    beam.steepest =
+        std::fmax(std::fmax(std::fabs(beam.u0), std::fabs(beam.u1)), std::fmax(std::fabs(beam.v0), std::fabs(beam.v1)));
     const float margin = 1e-6f;
     beam.u0 -= margin * std::fabs(beam.u0);
     beam.u1 += margin * std::fabs(beam.u1);

@@ -76,7 +76,7 @@ HWY_INLINE std::uint32_t hit_group(std::uint32_t candidates, const BeamTriangles
     Mask any = mask_of_bits(0);
     for (; candidates != 0; candidates &= candidates - 1) {
         const int l = std::countr_zero(candidates);
-        const auto linear = [&](const float (&c)[3][lanes]) HWY_ATTR {
+        const auto linear = [&](const float(&c)[3][lanes]) HWY_ATTR {
             return mul_add(Real(c[0][l]), u, mul_add(Real(c[1][l]), v, Real(c[2][l])));
         };
         const Real w0 = linear(triangles.edge[0]), w1 = linear(triangles.edge[1]), w2 = linear(triangles.edge[2]);
@@ -113,7 +113,12 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, Beam& beam) {
     const Vec3 normal = cross(e1, e2);
     const Real volume = dot(p[0], normal);
     const Real flip = copy_sign(Real(1.0f), volume), scale = Real(1.0f) / volume;
-    const Vec3 edge[3] = {cross(p[1] + p[2], e0) * flip, cross(p[2] + p[0], e1) * flip, cross(p[0] + p[1], e2) * flip};
+    Vec3 edge[3] = {cross(p[1] + p[2], e0) * flip, cross(p[2] + p[0], e1) * flip, cross(p[0] + p[1], e2) * flip};
+    // Around a shared corner the rounded edges may leave a gap: each is moved outward by its own rounding.
+    for (Vec3& e : edge) {
+        const Real magnitude = abs(e.x) * Real(beam.steepest) + abs(e.y) * Real(beam.steepest) + abs(e.z);
+        e.z = mul_add(Real(sum_slack), magnitude, e.z);
+    }
     BeamTriangles triangles;
     for (int i = 0; i < 3; ++i) {
         store(edge[i].x, triangles.edge[i][0]);
@@ -172,9 +177,8 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, std::int32_t first_id, Be
     // The sphere's box against the beam, as if it were a node's.
     const Real grown = radius + Real(beam.padding);
     const Real near_z = max(z - grown, Real(beam.depth_min)), far_z = z + grown;
-    const auto reach = [&](float slope, Real at_rising, Real at_falling) HWY_ATTR {
-        return Real(slope) * (slope >= 0 ? at_rising : at_falling);
-    };
+    const auto reach = [&](float slope, Real at_rising, Real at_falling)
+                           HWY_ATTR { return Real(slope) * (slope >= 0 ? at_rising : at_falling); };
     const Mask keep = (far_z >= Real(beam.depth_min)) & (near_z <= Real(beam.depth_max)) &
                       (x - grown <= reach(beam.u1, far_z, near_z)) & (x + grown >= reach(beam.u0, near_z, far_z)) &
                       (y - grown <= reach(beam.v1, far_z, near_z)) & (y + grown >= reach(beam.v0, near_z, far_z));

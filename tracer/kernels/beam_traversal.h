@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 // What a beam asks of sixteen child boxes: four sides of the frustum and the depth interval, one multiply-add each.
 struct BeamSlabs {
-    int near_bound, far_bound;       // along k: floats from the start of a BvhNode
+    int near_bound, far_bound;  // along k: floats from the start of a BvhNode
     int lower_a, upper_a, lower_b, upper_b;
     Real sign, near_offset, far_offset;
     // A box reaches the slope u1 where its lower side is at most origin + u1 * depth, at its farthest depth if u1

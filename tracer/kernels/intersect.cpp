@@ -37,7 +37,8 @@ bool hierarchy_is_empty(const CompiledScene& scene) { return scene.triangle_coun
 
 template <bool any_hit>
 bool traverse(const CompiledScene& scene, const SingleRay& ray, RayHit& hit) {
-    if (const Bvh* bvh = std::get_if<Bvh>(&scene.hierarchy.tree)) return traverse_single<any_hit>(scene, *bvh, ray, hit);
+    if (const Bvh* bvh = std::get_if<Bvh>(&scene.hierarchy.tree))
+        return traverse_single<any_hit>(scene, *bvh, ray, hit);
     return traverse_single<any_hit>(scene, *std::get_if<KdTree>(&scene.hierarchy.tree), ray, hit);
 }
 

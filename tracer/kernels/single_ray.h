@@ -172,9 +172,8 @@ bool traverse_single(const CompiledScene& scene, const Bvh& bvh, const SingleRay
     for (;;) {
         if (at.leaf()) {
             const bool done =
-                at.spheres()
-                    ? visit_spheres<any_hit>(spheres + at.first(), at.blocks(), scene.triangle_count, ray, hit)
-                    : visit_triangles<any_hit>(triangles + at.first(), at.blocks(), ray, hit);
+                at.spheres() ? visit_spheres<any_hit>(spheres + at.first(), at.blocks(), scene.triangle_count, ray, hit)
+                             : visit_triangles<any_hit>(triangles + at.first(), at.blocks(), ray, hit);
             if (any_hit && done) return true;
         } else {
             const BvhNode& node = bvh.nodes[at.bits];
