@@ -8,11 +8,10 @@ namespace raywalk {
 namespace {
 
 // Divisors of width and height, about sqrt(2) apart: a step halves or doubles the work.
-constexpr std::array divisors = {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 16.0, 22.0, 32.0};
-constexpr int smallest_side = 8;   // pixels
-constexpr double spare = 0.8;      // of the frame's time: a larger size must fit in this part of it
-constexpr int spare_frames = 6;    // so many frames in a row must have had the time
-constexpr double smoothing = 0.5;  // weight of the newest measurement
+constexpr std::array divisors = {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 16.0};
+constexpr int smallest_side = 8;  // pixels
+constexpr double spare = 0.8;     // of the frame's time: a larger size must fit in this part of it
+constexpr int spare_frames = 4;   // so many frames in a row must have had the time
 
 glm::ivec2 divided(glm::ivec2 window, int step) {
     const auto side = [&](int pixels) {
@@ -31,7 +30,9 @@ void FramePacing::measured(double pixels, double seconds, glm::ivec2 window) {
     if (pixels <= 0 || seconds <= 0) return;
     const double now = seconds / pixels;
     const bool first = !knows();
-    seconds_per_pixel_ = first ? now : seconds_per_pixel_ + smoothing * (now - seconds_per_pixel_);
+    // One slow frame may be the system's doing; two are the scene's.
+    seconds_per_pixel_ = first ? now : std::min(now, last_seconds_per_pixel_);
+    last_seconds_per_pixel_ = now;
 
     const auto time_of = [&](int step) { return seconds_per_pixel_ * pixels_of(divided(window, step)); };
     if (first || time_of(step_) > frame_seconds_) {

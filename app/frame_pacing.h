@@ -5,7 +5,7 @@
 
 namespace raywalk {
 
-// A frame has 1 / divisor of the window's pixels a side. The divisor grows at once when frames get late, and shrinks
+// A frame has 1 / divisor of the window's pixels a side. The divisor grows when two frames were late, and shrinks
 // only after several frames had time to spare, so that the picture does not hop between two sizes.
 class FramePacing {
   public:
@@ -26,7 +26,8 @@ class FramePacing {
 
   private:
     double frame_seconds_;
-    double seconds_per_pixel_ = 0;
+    double seconds_per_pixel_ = 0;       // the less of the last two frames
+    double last_seconds_per_pixel_ = 0;  // of the last frame
     int step_ = first_step;
     int spare_frames_ = 0;
 
