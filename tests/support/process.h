@@ -15,9 +15,9 @@ struct Process {
     // What stdout and stderr go to: by default pipes whose text is kept.
     std::filesystem::path output_file = {};  // stdout to this file (/dev/full)
     bool closed_output = false;
-    int terminal_columns = 0;          // above 0: stderr is a terminal of this width
-    std::size_t memory_limit = 0;      // bytes of address space; 0: none
-    std::function<void(int)> started;  // called with the process id
+    int terminal_columns = 0;               // above 0: stderr is a terminal of this width
+    std::size_t memory_limit = 0;           // bytes of address space; 0: none
+    std::function<void(int)> started = {};  // called with the process id
 };
 
 struct Outcome {
