@@ -86,12 +86,15 @@ struct Hierarchy {
 
 enum class Accelerator { kdtree, bvh };
 
+// The costs are those of whole frames: KT from 1 to 6 and empty factors from 0.5 to 1 were timed on the dragon, the
+// monster, the bunny and the teapot. Beams ask for few, large leaves and for empty space cut off early; single rays
+// would have 2 and 0.85.
 struct KdOptions {
     int leaf_limit = 16;             // this many shapes or fewer always make a leaf
     int depth_limit = 0;             // 0: 8 + 1.6 log2 N, at most KdTree::max_depth
-    float traversal_cost = 1.0f;     // KT
+    float traversal_cost = 3.0f;     // KT
     float intersection_cost = 1.0f;  // KI, of one leaf block
-    float empty_factor = 0.8f;       // cost factor of a split that cuts off empty space
+    float empty_factor = 0.7f;       // cost factor of a split that cuts off empty space
 };
 
 struct BuildStatistics {

@@ -29,14 +29,39 @@ Event* EventArena::allocate(std::size_t count) {
     return result;
 }
 
+namespace {
+
+// Orders slots so that each block of sixteen holds neighbours: a beam passes by most blocks of a leaf at one test each.
+void gather_neighbours(std::span<std::uint32_t> slots, const std::vector<Bounds>& box) {
+    while (slots.size() > block_width) {
+        Bounds centers;
+        const auto center = [&](std::uint32_t slot) { return box[slot].lower * 0.5f + box[slot].upper * 0.5f; };
+        for (const std::uint32_t slot : slots) centers.extend(center(slot));
+        const glm::vec3 size = centers.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const std::size_t half = (slots.size() / block_width + 1) / 2 * block_width;
+        std::nth_element(slots.begin(), slots.begin() + static_cast<std::ptrdiff_t>(half), slots.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return center(a)[axis] < center(b)[axis]; });
+        gather_neighbours(slots.subspan(half), box);
+        slots = slots.first(half);
+    }
+}
+
+}  // namespace
+
 void Subtree::add_leaf(std::uint32_t node, const Node& of, const Slots& slots, const Input& input) {
     const std::size_t start = shapes.size();
     for (const Event event : of.events[0])
-        if (type_of(event) != EventType::end) shapes.push_back(slots.shape[slot_of(event)]);
-    const auto first_sphere = std::stable_partition(shapes.begin() + static_cast<std::ptrdiff_t>(start), shapes.end(),
-                                                    [&](std::uint32_t s) { return input.is_triangle(s); });
+        if (type_of(event) != EventType::end) shapes.push_back(slot_of(event));
+    const auto is_triangle = [&](std::uint32_t slot) { return input.is_triangle(slots.shape[slot]); };
+    const auto first_sphere =
+        std::stable_partition(shapes.begin() + static_cast<std::ptrdiff_t>(start), shapes.end(), is_triangle);
     const auto spheres = static_cast<std::uint32_t>(shapes.end() - first_sphere);
     const auto triangles = static_cast<std::uint32_t>(shapes.size() - start) - spheres;
+    const auto of_leaf = std::span(shapes).subspan(start);
+    gather_neighbours(of_leaf.first(triangles), slots.box);
+    gather_neighbours(of_leaf.last(spheres), slots.box);
+    for (std::uint32_t& shape : of_leaf) shape = slots.shape[shape];
     const auto blocks = [](std::uint32_t n) { return (n + block_width - 1) / block_width; };
     leaves.push_back({triangle_blocks, sphere_blocks, blocks(triangles), blocks(spheres)});
     leaf_start.push_back(static_cast<std::uint32_t>(shapes.size()));
