@@ -13,7 +13,8 @@ if [[ $# -gt 0 && $1 != -* ]]; then
     [[ ! -e $scene && -f $root/scenes/${scene%.scene}.scene ]] && scene=$root/scenes/${scene%.scene}.scene
 fi
 
-need_packages "${build_packages[@]}" $(vulkan_driver_package)
+vulkan_driver=$(vulkan_driver_package)
+need_packages "${build_packages[@]}" ${vulkan_driver:+"$vulkan_driver"}
 is_configured release || configure release RAYWALK_TESTS=OFF
 build release raywalk scene_files
 provide_runtime_folder

@@ -42,7 +42,8 @@ lint() {  # the compilation database of the release preset, our own files only
         xargs -0 -r -n 4 -P "$jobs" clang-tidy -p build/release --quiet --warnings-as-errors='*')
 }
 
-packages=("${build_packages[@]}" "${test_packages[@]}" $(vulkan_driver_package))
+vulkan_driver=$(vulkan_driver_package)
+packages=("${build_packages[@]}" "${test_packages[@]}" ${vulkan_driver:+"$vulkan_driver"})
 [[ $full == yes ]] && packages+=("${full_test_packages[@]}")
 need_packages "${packages[@]}" || exit 1
 provide_runtime_folder

@@ -166,4 +166,15 @@ TEST(House, EverySourceIsBuilt) {
     }
 }
 
+TEST(House, EveryTestThatIsPromisedExists) {
+    std::string tests;
+    for (const fs::path& file : files({"tests"}, {".cpp"})) tests += text_of(file);
+    const std::string promises = text_of(root / "tests/README.md");
+    const std::regex name("`([A-Z][A-Za-z0-9]*)\\.([A-Z][A-Za-z0-9]*)`");
+    std::size_t named = 0;
+    for (std::sregex_iterator match(promises.begin(), promises.end(), name), end; match != end; ++match, ++named)
+        EXPECT_NE(tests.find((*match)[1].str() + ", " + (*match)[2].str()), std::string::npos) << match->str();
+    EXPECT_GT(named, 50u);
+}
+
 }  // namespace
