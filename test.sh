@@ -58,6 +58,7 @@ if [[ $failed -eq 0 ]]; then
         stage "warnings as errors" build_with_tests dev
         stage "build with sanitizers" build_with_tests asan
         stage "quick suite under address and undefined-behaviour sanitizers" suite asan -LE long
+        stage "fuzzing, a minute for each target" "$root/tests/fuzz/run.sh" 60
         stage "lint" lint
     fi
 fi

@@ -20,7 +20,7 @@ fovy    40
 Light
 origin      -14.0 20.0 12.0
 color       WHITE
-intensity   1.35
+intensity   1.6
 
 Light
 origin      -14.0 20.0 12.0
@@ -30,7 +30,7 @@ intensity   0.22
 Light
 origin      16.0 9.0 20.0
 color       WHITE
-intensity   0.6
+intensity   0.75
 
 Plane
 texture ImageTexture FLOOR ../textures/wood.png 8
