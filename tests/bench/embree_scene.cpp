@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "tests/bench/embree_spheres.h"
-#include "tests/bench/measure.h"
 
 namespace raywalk::bench {
 
@@ -177,15 +176,15 @@ EmbreeDevice::EmbreeDevice(int threads)
 EmbreeDevice::~EmbreeDevice() { rtcReleaseDevice(device_); }
 std::ptrdiff_t EmbreeDevice::bytes() const { return bytes_now; }
 
-EmbreeScene::EmbreeScene(const EmbreeDevice& device, const Geometry& geometry, const EmbreeBuild& build)
+EmbreeScene::EmbreeScene(const EmbreeDevice& device, const Geometry& geometry, const EmbreeBuild& build, Clock clock)
     : scene_(rtcNewScene(device.handle())), build_(build), spheres_(geometry.spheres) {
     rtcSetSceneBuildQuality(scene_, build.quality);
     if (!geometry.faces.empty()) attach_triangles(device.handle(), scene_, geometry, build.quality);
     if (!spheres_.empty()) attach_spheres(device.handle(), scene_, spheres_, build);
     const std::ptrdiff_t before = device.bytes();
-    const double start = seconds(Clock::wall);
+    const double start = seconds(clock);
     rtcCommitScene(scene_);
-    build_seconds_ = seconds(Clock::wall) - start;
+    build_seconds_ = seconds(clock) - start;
     bytes_ = device.bytes() - before;
     if (const RTCError error = rtcGetDeviceError(device.handle()); error != RTC_ERROR_NONE)
         throw std::runtime_error("Embree failed to build (error " + std::to_string(error) + ")");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/bench/geometry.h"
+#include "tests/bench/measure.h"
 #include "tracer/kernels/kernels.h"
 
 namespace raywalk::bench {
@@ -36,14 +37,15 @@ struct EmbreeBuild {
 class EmbreeScene {
   public:
     // Builds at once. Shape ids are those of CompiledScene: triangles, then spheres.
-    EmbreeScene(const EmbreeDevice& device, const Geometry& geometry, const EmbreeBuild& build);
+    EmbreeScene(const EmbreeDevice& device, const Geometry& geometry, const EmbreeBuild& build,
+                Clock clock = Clock::wall);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     [[nodiscard]] RTCScene handle() const { return scene_; }
     [[nodiscard]] const EmbreeBuild& build() const { return build_; }
-    [[nodiscard]] double build_seconds() const { return build_seconds_; }  // of the commit alone, wall
+    [[nodiscard]] double build_seconds() const { return build_seconds_; }  // of the commit alone
     [[nodiscard]] std::ptrdiff_t bytes() const { return bytes_; }          // of the hierarchy
 
   private:

@@ -7,7 +7,10 @@ namespace raywalk::bench {
 
 double seconds(Clock clock) {
     timespec now{};
-    clock_gettime(clock == Clock::thread_cpu ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &now);
+    clock_gettime(clock == Clock::thread_cpu    ? CLOCK_THREAD_CPUTIME_ID
+                  : clock == Clock::process_cpu ? CLOCK_PROCESS_CPUTIME_ID
+                                                : CLOCK_MONOTONIC,
+                  &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -23,17 +26,19 @@ Spread spread_of(std::vector<double> values) {
     return {at(0.25), at(0.5), at(0.75)};
 }
 
-std::vector<std::vector<double>> take_turns(std::span<const Pass> passes, int rounds, Clock clock, bool warm_up) {
+Pass timed(Clock clock, std::function<void()> work) {
+    return [clock, work = std::move(work)] {
+        const double start = seconds(clock);
+        work();
+        return seconds(clock) - start;
+    };
+}
+
+std::vector<std::vector<double>> take_turns(std::span<const Pass> passes, int rounds) {
     std::vector<std::vector<double>> times(passes.size());
-    if (warm_up)
-        for (const Pass& pass : passes) pass();
-    for (int round = 0; round < rounds; ++round) {
-        for (std::size_t i = 0; i < passes.size(); ++i) {
-            const double start = seconds(clock);
-            passes[i]();
-            times[i].push_back(seconds(clock) - start);
-        }
-    }
+    for (const Pass& pass : passes) pass();
+    for (int round = 0; round < rounds; ++round)
+        for (std::size_t i = 0; i < passes.size(); ++i) times[i].push_back(passes[i]());
     return times;
 }
 

@@ -9,8 +9,9 @@
 namespace raywalk::bench {
 
 enum class Clock {
-    thread_cpu,  // work of the calling thread only
-    wall,        // work of many threads
+    thread_cpu,   // work of the calling thread only
+    process_cpu,  // of one thread that need not be the calling one
+    wall,         // of many threads
 };
 double seconds(Clock clock);
 
@@ -20,10 +21,12 @@ struct Spread {
 };
 Spread spread_of(std::vector<double> values);
 
-using Pass = std::function<void()>;
+// Does its work and returns the seconds that it took.
+using Pass = std::function<double()>;
+Pass timed(Clock clock, std::function<void()> work);
 
 // Runs pass 0, 1, ... in turn, `rounds` times, after one turn that is not counted. times[pass][round] in seconds.
-std::vector<std::vector<double>> take_turns(std::span<const Pass> passes, int rounds, Clock clock, bool warm_up = true);
+std::vector<std::vector<double>> take_turns(std::span<const Pass> passes, int rounds);
 
 // Of numerator[i] / denominator[i], round by round: what disturbs a round disturbs both.
 Spread ratio_of(std::span<const double> numerator, std::span<const double> denominator);

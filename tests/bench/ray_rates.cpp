@@ -54,8 +54,9 @@ std::vector<EmbreeContender> fastest_two(const std::vector<EmbreeContender>& con
     const RaySet sample = thinned(set, 5);
     HitArrays hits(sample.rays.size());
     std::vector<Pass> passes;
-    for (const EmbreeContender& c : contenders) passes.emplace_back([&] { trace(c, triangle_count, sample, hits); });
-    const auto times = take_turns(passes, 3, Clock::thread_cpu);
+    for (const EmbreeContender& c : contenders)
+        passes.push_back(timed(Clock::thread_cpu, [&] { trace(c, triangle_count, sample, hits); }));
+    const auto times = take_turns(passes, 3);
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         const double time = spread_of(times[i]).median;
@@ -78,11 +79,14 @@ RateRow measure_kind(const Geometry& geometry, const std::vector<EmbreeContender
 
     std::array<HitArrays, 4> hits;
     hits.fill(HitArrays(set.rays.size()));
-    const Pass passes[] = {[&] { trace(best[0], triangle_count, set, hits[0]); },
-                           [&] { trace(*options.kernels, scenes[0], set, hits[1]); },
-                           [&] { trace(best[1], triangle_count, set, hits[2]); },
-                           [&] { trace(*options.kernels, scenes[1], set, hits[3]); }};
-    const auto times = take_turns(passes, options.rounds, Clock::thread_cpu);
+    const auto ours = [&](std::size_t a) {
+        return timed(Clock::thread_cpu, [&, a] { trace(*options.kernels, scenes[a], set, hits[1 + 2 * a]); });
+    };
+    const auto theirs = [&](std::size_t b) {
+        return timed(Clock::thread_cpu, [&, b] { trace(best[b], triangle_count, set, hits[2 * b]); });
+    };
+    const Pass passes[] = {theirs(0), ours(0), theirs(1), ours(1)};
+    const auto times = take_turns(passes, options.rounds);
 
     const auto rate = [&](std::size_t pass) { return static_cast<double>(set.live) / spread_of(times[pass]).median; };
     const std::size_t embree = rate(0) >= rate(2) ? 0 : 2;

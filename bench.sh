@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# ./bench.sh [--quick] [--json FILE] [--mesh FILE]... [--only PART]...: measures Raywalk against Embree, tinyobjloader and assimp,
+# which it installs where they are missing. Markdown goes to stdout and, after a whole run, into README.md between its
+# benchmark marks, together with the plot of growth. Exit code 1: contenders disagree about what was hit.
+set -euo pipefail
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
+source "$root/tools/prepare.sh"
+bench_packages=(libembree-dev libtinyobjloader-dev libassimp-dev)
+
+whole=yes
+for option in "$@"; do
+    case $option in --quick | --only | --scene | --profile | --isa | --help | -h) whole=no ;; esac
+done
+
+need_packages "${build_packages[@]}" "${bench_packages[@]}"
+is_configured bench || configure bench
+build bench raywalk_bench raywalk scene_files
+
+bench=$root/build/bench/raywalk_bench
+if [[ $whole == no ]]; then
+    exec "$bench" "$@"
+fi
+"$bench" --plot "$root/scenes/pictures/growth.svg" "$@" | tee "$root/build/bench/benchmark.md"
+
+# Only the lines between the marks are ours.
+readme=$root/README.md
+if grep -q '^<!-- benchmark -->$' "$readme" 2>/dev/null && grep -q '^<!-- end of benchmark -->$' "$readme"; then
+    awk -v table="$root/build/bench/benchmark.md" '
+        /^<!-- benchmark -->$/ { print; print ""; while ((getline line < table) > 0) print line; print ""; inside = 1; next }
+        /^<!-- end of benchmark -->$/ { inside = 0 }
+        !inside' "$readme" >"$readme.new"
+    mv "$readme.new" "$readme"
+    say "README.md holds the new figures."
+fi
