@@ -18,7 +18,7 @@ if [ ${#names[@]} -eq 0 ]; then
 fi
 
 mkdir -p build/fuzz/findings
-export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 # libraries keep what they cache
+export ASAN_OPTIONS=allocator_may_return_null=0
 failed=0
 for name in "${names[@]}"; do
     mkdir -p "build/fuzz/corpus/$name"

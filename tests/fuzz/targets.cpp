@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <iostream>
 
-#include "tracer/description/image.h"
 #include "tracer/description/obj_reader.h"
 #include "tracer/description/scene_parser.h"
 
@@ -76,20 +75,6 @@ void obj(std::string_view input) {
         check_diagnostics(error.diagnostics(), input, limits);
     }
     check_diagnostics(warnings, input, limits);
-}
-
-void image(std::string_view input) {
-    Limits limits;
-    limits.image_pixels = 4 << 20;
-    try {
-        const Image image = decode_image(input, "x.png", limits, {"x.scene", 1, 1});
-        require(image.width >= 1 && image.height >= 1, "a size");
-        require(image.texels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
-                "a texel for each pixel");
-        for (const std::uint32_t texel : image.texels) require(texel <= 0xFFFFFF, "three channels");
-    } catch (const InputError& error) {
-        check_diagnostics(error.diagnostics(), "", limits);
-    }
 }
 
 }  // namespace raywalk::fuzz

@@ -8,6 +8,5 @@ namespace raywalk::fuzz {
 
 void scene(std::string_view input);
 void obj(std::string_view input);
-void image(std::string_view input);
 
 }  // namespace raywalk::fuzz

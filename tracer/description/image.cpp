@@ -1,7 +1,5 @@
 #include "tracer/description/image.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "tracer/description/image_codecs.h"
+#include "tracer/description/image_process.h"
 #include "tracer/ground/file_bytes.h"
 #include "tracer/ground/whole_file.h"
 
@@ -20,29 +18,6 @@ namespace raywalk {
 namespace fs = std::filesystem;
 
 namespace {
-
-// The module beside the program (as built), or in ../lib/raywalk (as installed).
-ImageCodecs load_codecs() {
-    std::error_code error;
-    const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-    std::string reason;
-    for (const fs::path& folder : {here, here / "../lib/raywalk"}) {
-        const fs::path module = folder / "raywalk_images.so";
-        if (!fs::exists(module, error)) continue;
-        void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (void* symbol = handle ? dlsym(handle, image_codecs_symbol) : nullptr)
-            return std::bit_cast<ImageCodecsFunction>(symbol)();
-        reason = dlerror();
-    }
-    if (reason.empty())
-        reason = "raywalk_images.so is neither in " + here.string() + " nor in ../lib/raywalk from there";
-    throw WorkError("images cannot be read or written: " + reason);
-}
-
-const ImageCodecs& codecs() {
-    static const ImageCodecs loaded = load_codecs();  // once; a failure is tried again
-    return loaded;
-}
 
 std::optional<ImageFormat> format_of(std::string_view bytes) {
     using namespace std::string_view_literals;
@@ -110,14 +85,62 @@ const Extension& require_extension(const fs::path& file) {
 
 constexpr const char* readable_formats = "expected a PNG, JPEG, TIFF, EXR or HDR file";
 
+constexpr const char* other_image = "save it again with another program, or try another image";
+constexpr std::uint64_t small_image = 1ull << 22;  // pixels that any file may promise
+
 InputError refusal(const fs::path& file, const SourceLocation& where, const std::string& problem, std::string advice) {
     const SourceLocation place = where.file.empty() ? SourceLocation{file.string()} : where;
     return InputError(error_at(place, "image " + raywalk::quoted(file.native()) + " " + problem, std::move(advice)));
 }
 
-void write_encoded(const fs::path& file, const std::string& problem, const std::vector<unsigned char>& bytes) {
-    if (!problem.empty()) throw WorkError("cannot write '" + file.string() + "': " + problem);
+// What decoding may cost, for a picture of at most so many pixels. Decoders hold the file, its pixels in the file's own
+// precision (up to 4 channels of 4 bytes) and ours; the rest is what a process of so many libraries needs itself.
+ImageBudget budget_for(std::uint64_t pixels, std::uint64_t file_bytes) {
+    return {.pixels = pixels,
+            .memory_bytes = (80ull << 20) + 2 * file_bytes + 24 * pixels,
+            .output_bytes = sizeof(ImageReply) + 4 * pixels + 4096,
+            .seconds = 6 + file_bytes / (1 << 20)};
+}
+
+ImageResult decode(ImageFormat format, std::string_view bytes, const fs::path& file, const SourceLocation& where,
+                   std::uint64_t most_pixels) {
+    try {
+        return decode_in_process(format, bytes, budget_for(most_pixels, bytes.size()));
+    } catch (const WorkError& error) {
+        throw refusal(file, where, std::string("cannot be read: ") + error.what(), other_image);
+    }
+}
+
+// The picture of a reply that says it is done, if its size bears that out.
+Image texels_of(const ImageResult& result, const fs::path& file, const SourceLocation& where) {
+    const std::string_view body = result.body();
+    const std::uint64_t pixels = std::uint64_t{result.reply.width} * result.reply.height;
+    constexpr std::uint32_t largest_side = 1u << 30;
+    if (pixels == 0 || std::max(result.reply.width, result.reply.height) > largest_side || body.size() != 4 * pixels)
+        throw refusal(file, where, "cannot be read: its decoder broke", other_image);
+    Image image{static_cast<int>(result.reply.width), static_cast<int>(result.reply.height), {}};
+    image.texels.resize(pixels);
+    std::memcpy(image.texels.data(), body.data(), body.size());
+    for (std::uint32_t& texel : image.texels) texel &= 0xFF'FFFF;
+    return image;
+}
+
+void write_bytes(const fs::path& file, std::span<const unsigned char> bytes) {
     write_whole(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+void encode_and_write(const fs::path& file, ImageFormat format, int width, int height, bool floats,
+                      std::string_view rgb) {
+    std::string problem;
+    try {
+        const ImageResult result = encode_in_process(format, width, height, floats, rgb);
+        if (result.reply.status == ImageReply::done) return write_whole(file, result.body());
+        problem = printable(result.body());
+    } catch (const WorkError& error) {
+        problem = error.what();
+        if (problem.starts_with("cannot write")) throw;
+    }
+    throw WorkError("cannot write '" + file.string() + "': " + problem);
 }
 
 }  // namespace
@@ -125,19 +148,20 @@ void write_encoded(const fs::path& file, const std::string& problem, const std::
 Image decode_image(std::string_view bytes, const fs::path& file, const Limits& limits, const SourceLocation& where) {
     const auto format = format_of(bytes);
     if (!format) throw refusal(file, where, "is none that a scene may show", readable_formats);
-    std::string advice = "save it again with another program, or try another image";
-    const auto size_problem = [&](std::uint64_t width, std::uint64_t height) -> std::string {
-        const std::uint64_t pixels = width * height;  // each below 2^31
-        const bool packed = pixels > (1ull << 22) + limits.image_pixels_per_byte * bytes.size();
-        if (!packed && pixels <= limits.image_pixels) return {};
-        advice = how_to_raise(limits, packed ? &Limits::image_pixels_per_byte : &Limits::image_pixels);
-        return "it claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels, " +
-               (packed ? "more than so small a file can hold" : "which is too large");
-    };
-    Image image;
-    const std::string problem = codecs().decode(*format, {bytes.data(), bytes.size()}, size_problem, image);
-    if (!problem.empty()) throw refusal(file, where, "cannot be read: " + printable(problem), advice);
-    return image;
+    const std::uint64_t plausible = small_image + limits.image_pixels_per_byte * bytes.size();
+    const ImageResult result = decode(*format, bytes, file, where, std::min(plausible, limits.image_pixels));
+    const ImageReply& reply = result.reply;
+    if (reply.status == ImageReply::failed)
+        throw refusal(file, where, "cannot be read: " + printable(result.body()), other_image);
+    const std::uint64_t pixels = std::uint64_t{reply.width} * reply.height;
+    if (reply.status == ImageReply::too_large) {
+        const bool packed = pixels > plausible;
+        throw refusal(file, where,
+                      "claims " + std::to_string(reply.width) + " x " + std::to_string(reply.height) + " pixels, " +
+                          (packed ? "more than so small a file can hold" : "which is too large"),
+                      how_to_raise(limits, packed ? &Limits::image_pixels_per_byte : &Limits::image_pixels));
+    }
+    return texels_of(result, file, where);
 }
 
 Image read_image(const fs::path& file, const Limits& limits, const SourceLocation& where) {
@@ -158,13 +182,10 @@ bool is_float_extension(const fs::path& file) {
 
 void write_image(const fs::path& file, const FloatImage& image) {
     const Extension& extension = require_extension(file);
-    if (!extension.format) return write_encoded(file, {}, encode_pfm(image));
-    std::vector<unsigned char> bytes;
-    const std::string problem =
-        extension.floats
-            ? codecs().encode_floats(*extension.format, image.width, image.height, image.rgb, bytes)
-            : codecs().encode_bytes(*extension.format, image.width, image.height, display_bytes(image), bytes);
-    write_encoded(file, problem, bytes);
+    if (!extension.format) return write_bytes(file, encode_pfm(image));
+    if (!extension.floats) return write_image(file, image.width, image.height, display_bytes(image));
+    const std::string_view rgb(reinterpret_cast<const char*>(image.rgb.data()), image.rgb.size() * sizeof(float));
+    encode_and_write(file, *extension.format, image.width, image.height, true, rgb);
 }
 
 void write_image(const fs::path& file, int width, int height, std::span<const std::uint8_t> rgb) {
@@ -174,9 +195,8 @@ void write_image(const fs::path& file, int width, int height, std::span<const st
         std::ranges::transform(rgb, image.rgb.begin(), [](std::uint8_t v) { return static_cast<float>(v) / 255.0f; });
         return write_image(file, image);
     }
-    std::vector<unsigned char> bytes;
-    const std::string problem = codecs().encode_bytes(*extension.format, width, height, rgb, bytes);
-    write_encoded(file, problem, bytes);
+    const std::string_view bytes(reinterpret_cast<const char*>(rgb.data()), rgb.size());
+    encode_and_write(file, *extension.format, width, height, false, bytes);
 }
 
 }  // namespace raywalk

@@ -1,5 +1,4 @@
-// Pictures in and out. OpenImageIO does the work, in a module that is loaded on the first call, because linking it
-// costs every start 0.2-0.35 s.
+// Pictures in and out. OpenImageIO does the work, in a process of its own (image_process.h).
 #pragma once
 
 #include <cstdint>
@@ -20,7 +19,8 @@ struct Image {
     std::vector<std::uint32_t> texels;
 };
 
-// Reads PNG, JPEG, TIFF, EXR or HDR (told by content, nothing else is tried). Throws InputError placed at `where`.
+// Reads PNG, JPEG, TIFF, EXR or HDR (told by content, nothing else is tried). Throws InputError placed at `where`, also
+// when a picture breaks its decoder, or takes too much memory or time.
 Image read_image(const std::filesystem::path& file, const Limits& limits, const SourceLocation& where);
 // The same for a file already in memory; `file` names it in messages.
 Image decode_image(std::string_view bytes, const std::filesystem::path& file, const Limits& limits,

@@ -1,4 +1,4 @@
-// The module raywalk_images.so: all that the tracer asks of OpenImageIO.
+// The codecs of the program raywalk_openimageio: TIFF, EXR and HDR.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -14,20 +14,20 @@ namespace {
 
 constexpr int most_channels = 64;  // more is no picture; the first three are read
 
+// The name of a format's plugin; nullptr for formats that the other helper has.
 const char* plugin_name(ImageFormat format) {
     switch (format) {
-        case ImageFormat::png:
-            return "png";
-        case ImageFormat::jpeg:
-            return "jpeg";
         case ImageFormat::tiff:
             return "tiff";
         case ImageFormat::exr:
             return "openexr";
         case ImageFormat::hdr:
             return "hdr";
+        case ImageFormat::png:
+        case ImageFormat::jpeg:
+            break;
     }
-    return "";
+    return nullptr;
 }
 
 // The first line of what OpenImageIO says went wrong.
@@ -66,7 +66,7 @@ bool read_rows(OIIO::ImageInput& input, OIIO::TypeDesc type, int begin, int end,
     return true;
 }
 
-std::string decode_pixels(OIIO::ImageInput& input, Image& image) {
+std::string read_pixels(OIIO::ImageInput& input, Image& image) {
     constexpr int band = 64;  // rows at a time: a picture is never held twice
     const OIIO::ImageSpec spec = input.spec();
     const int channels = spec.nchannels >= 3 ? 3 : 1;
@@ -84,10 +84,18 @@ std::string decode_pixels(OIIO::ImageInput& input, Image& image) {
     return {};
 }
 
-std::string decode(ImageFormat format, std::span<const char> bytes, const ImageCodecs::Refusal& refusal, Image& image) {
+}  // namespace
+
+void use_one_thread() {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
+}
+
+std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const ImageRefusal& refusal, Image& image) {
     try {
-        const auto input = OIIO::ImageInput::create(plugin_name(format));
-        if (!input) return "OpenImageIO has no " + std::string(plugin_name(format)) + " reader";
+        const char* plugin = plugin_name(format);
+        const auto input = plugin ? OIIO::ImageInput::create(plugin) : nullptr;
+        if (!input) return "OpenImageIO cannot read its format";
         OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());  // it only reads
         OIIO::ImageSpec wishes, spec;
         OIIO::Filesystem::IOProxy* proxy = &memory;
@@ -109,7 +117,7 @@ std::string decode(ImageFormat format, std::span<const char> bytes, const ImageC
                     !reason.empty())
                     return reason;
         }
-        std::string problem = decode_pixels(*input, image);
+        std::string problem = read_pixels(*input, image);
         input->close();
         return problem;
     } catch (const std::bad_alloc&) {
@@ -119,18 +127,17 @@ std::string decode(ImageFormat format, std::span<const char> bytes, const ImageC
     }
 }
 
+namespace {
+
 std::string encode(ImageFormat format, OIIO::ImageSpec spec, const void* rgb, std::vector<unsigned char>& bytes) {
     try {
-        const auto output = OIIO::ImageOutput::create(plugin_name(format));
-        if (!output) return "OpenImageIO has no " + std::string(plugin_name(format)) + " writer";
+        const char* plugin = plugin_name(format);
+        const auto output = plugin ? OIIO::ImageOutput::create(plugin) : nullptr;
+        if (!output) return "OpenImageIO cannot write this format";
         OIIO::Filesystem::IOVecOutput memory(bytes);
         OIIO::Filesystem::IOProxy* proxy = &memory;
         spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
         if (format == ImageFormat::exr || format == ImageFormat::tiff) spec.attribute("compression", "zip");
-        if (format == ImageFormat::jpeg) {
-            spec.attribute("compression", "jpeg:95");
-            spec.attribute("jpeg:subsampling", "4:4:4");
-        }
         if (!output->open("image", spec) || !output->write_image(spec.format, rgb) || !output->close())
             return first_line(output->geterror());
         return {};
@@ -140,6 +147,8 @@ std::string encode(ImageFormat format, OIIO::ImageSpec spec, const void* rgb, st
         return error.what();
     }
 }
+
+}  // namespace
 
 std::string encode_floats(ImageFormat format, int width, int height, std::span<const float> rgb,
                           std::vector<unsigned char>& bytes) {
@@ -151,10 +160,4 @@ std::string encode_bytes(ImageFormat format, int width, int height, std::span<co
     return encode(format, OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8), rgb.data(), bytes);
 }
 
-}  // namespace
-
 }  // namespace raywalk
-
-extern "C" __attribute__((visibility("default"))) raywalk::ImageCodecs raywalk_image_codecs() {
-    return {.decode = raywalk::decode, .encode_floats = raywalk::encode_floats, .encode_bytes = raywalk::encode_bytes};
-}

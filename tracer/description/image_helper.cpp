@@ -1,0 +1,130 @@
+// The programs raywalk_png_jpeg and raywalk_openimageio: decode or encode one picture, from standard input to standard
+// output, both files in memory. Not for the command line: image_process.cpp runs them.
+//   decode FORMAT PIXELS MEMORY_BYTES OUTPUT_BYTES SECONDS
+//   encode FORMAT WIDTH HEIGHT floats|bytes
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <string>
+
+#include "tracer/description/image_codecs.h"
+#include "tracer/description/image_process.h"
+#include "tracer/ground/file_bytes.h"
+
+// The shadow memory of a sanitizer alone is over any limit.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define RAYWALK_SHADOW_MEMORY
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define RAYWALK_SHADOW_MEMORY
+#endif
+#endif
+
+namespace raywalk {
+
+namespace {
+
+void limit(int resource, std::uint64_t most) {
+    if (most == 0) return;
+    const rlimit both{most, most};
+    setrlimit(static_cast<__rlimit_resource>(resource), &both);
+}
+
+bool write_all(const void* data, std::size_t size) {
+    const char* at = static_cast<const char*>(data);
+    while (size > 0) {
+        const ssize_t count = write(STDOUT_FILENO, at, size);
+        if (count <= 0) return false;
+        at += count;
+        size -= static_cast<std::size_t>(count);
+    }
+    return true;
+}
+
+int answer(ImageReply::Status status, std::uint64_t width, std::uint64_t height, const void* body, std::size_t size) {
+    const ImageReply reply{ImageReply::magic_number, status, static_cast<std::uint32_t>(width),
+                           static_cast<std::uint32_t>(height)};
+    return write_all(&reply, sizeof reply) && write_all(body, size) ? 0 : 1;
+}
+
+int answer_failure(const std::string& reason) {
+    constexpr std::size_t longest = 300;  // bytes of a reason
+    return answer(ImageReply::failed, 0, 0, reason.data(), std::min(reason.size(), longest));
+}
+
+int decode(ImageFormat format, std::string_view input, std::uint64_t most_pixels) {
+    use_one_thread();  // whose stacks would count
+    std::uint64_t width = 0, height = 0;
+    bool too_large = false;
+    const ImageRefusal refusal = [&](std::uint64_t w, std::uint64_t h) -> std::string {
+        width = w;
+        height = h;
+        too_large = w * h > most_pixels;
+        return too_large ? "too large" : "";
+    };
+    Image image;
+    const std::string problem = decode_pixels(format, {input.data(), input.size()}, refusal, image);
+    if (too_large) return answer(ImageReply::too_large, width, height, nullptr, 0);
+    if (!problem.empty()) return answer_failure(problem);
+    return answer(ImageReply::done, width, height, image.texels.data(), image.texels.size() * sizeof image.texels[0]);
+}
+
+int encode(ImageFormat format, std::string_view input, int width, int height, bool floats) {
+    const std::size_t values = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3;
+    if (input.size() != values * (floats ? sizeof(float) : 1)) return answer_failure("its size is wrong");
+    std::vector<unsigned char> bytes;
+    // The input's memory begins on a page, so floats are aligned.
+    const std::string problem =
+        floats
+            ? encode_floats(format, width, height, {reinterpret_cast<const float*>(input.data()), values}, bytes)
+            : encode_bytes(format, width, height, {reinterpret_cast<const std::uint8_t*>(input.data()), values}, bytes);
+    if (!problem.empty()) return answer_failure(problem);
+    return answer(ImageReply::done, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), bytes.data(),
+                  bytes.size());
+}
+
+int run(int count, char** words) {
+    const std::string task = count > 1 ? words[1] : "";
+    const auto number = [&](int i) { return std::strtoull(words[i], nullptr, 10); };
+    if (!(task == "decode" && count == 7) && !(task == "encode" && count == 6)) {
+        std::fputs("raywalk runs this program for each picture that it reads or writes\n", stderr);
+        return 2;
+    }
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would take the picture
+    const auto format = static_cast<ImageFormat>(number(2));
+    if (task == "decode") {
+        limit(RLIMIT_CORE, 1);
+#if !defined(RAYWALK_SHADOW_MEMORY)
+        limit(RLIMIT_DATA, number(4));
+#endif
+        limit(RLIMIT_FSIZE, number(5));
+        limit(RLIMIT_CPU, number(6));
+    }
+    try {
+        const FileBytes input = read_file_bytes("/dev/fd/0", ~std::uint64_t{0});
+        return task == "decode" ? decode(format, input.text(), number(3))
+                                : encode(format, input.text(), static_cast<int>(number(3)), static_cast<int>(number(4)),
+                                         std::strcmp(words[5], "floats") == 0);
+    } catch (const std::bad_alloc&) {
+        return answer_failure("it needs too much memory");
+    } catch (const std::exception& error) {
+        return answer_failure(error.what());
+    }
+}
+
+}  // namespace
+
+}  // namespace raywalk
+
+int main(int count, char** words) {
+    const int code = raywalk::run(count, words);
+    // Nothing is left to say, and 260 libraries have a lot to tidy up.
+    std::_Exit(code);
+}

@@ -1,0 +1,29 @@
+// The codecs of the program raywalk_png_jpeg, which starts at once: the formats that most pictures have.
+#include "tracer/description/image_codecs.h"
+#include "tracer/description/image_jpeg.h"
+#include "tracer/description/image_png.h"
+
+namespace raywalk {
+
+namespace {
+constexpr const char* neither = "it is neither PNG nor JPEG";
+}
+
+void use_one_thread() {}  // it has no other
+
+std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const ImageRefusal& refusal, Image& image) {
+    if (format == ImageFormat::png) return decode_png(bytes, refusal, image);
+    return format == ImageFormat::jpeg ? decode_jpeg(bytes, refusal, image) : neither;
+}
+
+std::string encode_bytes(ImageFormat format, int width, int height, std::span<const std::uint8_t> rgb,
+                         std::vector<unsigned char>& bytes) {
+    if (format == ImageFormat::png) return encode_png(width, height, rgb, bytes);
+    return format == ImageFormat::jpeg ? encode_jpeg(width, height, rgb, bytes) : neither;
+}
+
+std::string encode_floats(ImageFormat, int, int, std::span<const float>, std::vector<unsigned char>&) {
+    return neither;
+}
+
+}  // namespace raywalk
