@@ -10,6 +10,7 @@
 #define RAYWALK_KERNELS_BEAM_H
 #endif
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -100,10 +101,10 @@ HWY_INLINE void measure_beam(std::uint64_t active, Beam& beam) {
         group.u1 = reduce_max(select(live, group.u, Real(-infinity)));
         group.v0 = reduce_min(select(live, group.v, Real(infinity)));
         group.v1 = reduce_max(select(live, group.v, Real(-infinity)));
-        beam.u0 = std::fmin(beam.u0, group.u0);
-        beam.u1 = std::fmax(beam.u1, group.u1);
-        beam.v0 = std::fmin(beam.v0, group.v0);
-        beam.v1 = std::fmax(beam.v1, group.v1);
+        beam.u0 = std::min(beam.u0, group.u0);
+        beam.u1 = std::max(beam.u1, group.u1);
+        beam.v0 = std::min(beam.v0, group.v0);
+        beam.v1 = std::max(beam.v1, group.v1);
     }
 }
 
@@ -145,7 +146,7 @@ HWY_INLINE void start_beam(const BeamRays& rays, float padding, Beam& beam) {
     beam.depth_min = reduce_min(depth_min) * (1.0f - slab_slack);
     shorten_beam(beam);
     beam.steepest =
-        std::fmax(std::fmax(std::fabs(beam.u0), std::fabs(beam.u1)), std::fmax(std::fabs(beam.v0), std::fabs(beam.v1)));
+        std::max(std::max(std::fabs(beam.u0), std::fabs(beam.u1)), std::max(std::fabs(beam.v0), std::fabs(beam.v1)));
     const float margin = 1e-6f;
     beam.u0 -= margin * std::fabs(beam.u0);
     beam.u1 += margin * std::fabs(beam.u1);

@@ -8,6 +8,8 @@
 #define RAYWALK_KERNELS_BEAM_TRAVERSAL_H
 #endif
 
+#include <algorithm>
+
 #include "tracer/kernels/beam_shapes.h"
 #include "tracer/kernels/traversal_stack.h"
 
@@ -117,8 +119,8 @@ void traverse_beam(const CompiledScene& scene, const KdTree& tree, Beam& beam) {
     int depth = 0;
     const float low = (h.bounds.lower[beam.k] - beam.origin[beam.k]) * beam.sign;
     const float high = (h.bounds.upper[beam.k] - beam.origin[beam.k]) * beam.sign;
-    KdInterval at = {0, std::fmax(beam.depth_min, std::fmin(low, high) - beam.padding),
-                     std::fmin(beam.depth_max, std::fmax(low, high) + beam.padding)};
+    KdInterval at = {0, std::max(beam.depth_min, std::min(low, high) - beam.padding),
+                     std::min(beam.depth_max, std::max(low, high) + beam.padding)};
     if (!(at.enter <= at.leave)) return;
 
     for (;;) {
@@ -142,8 +144,8 @@ void traverse_beam(const CompiledScene& scene, const KdTree& tree, Beam& beam) {
                 } else if (z1 < at.enter) {
                     at.node = far_child;
                 } else {
-                    stack[depth++] = {far_child, std::fmax(at.enter, z0), at.leave};
-                    at = {near_child, at.enter, std::fmin(at.leave, z1)};
+                    stack[depth++] = {far_child, std::max(at.enter, z0), at.leave};
+                    at = {near_child, at.enter, std::min(at.leave, z1)};
                 }
             }
             node = tree.nodes[at.node];
@@ -161,7 +163,7 @@ void traverse_beam(const CompiledScene& scene, const KdTree& tree, Beam& beam) {
             if (depth == 0) return;
             at = stack[--depth];
         } while (at.enter > beam.depth_max);
-        at.leave = std::fmin(at.leave, beam.depth_max);
+        at.leave = std::min(at.leave, beam.depth_max);
     }
 }
 

@@ -107,7 +107,7 @@ std::uint64_t trace_beams(const CompiledScene& scene, const BeamRays& rays, std:
                trace_beams<any_hit>(scene, rays, active & ~stay, splits + 1, hits);
     }
     measure_beam(active, beam);
-    if (std::fmax(beam.u1 - beam.u0, beam.v1 - beam.v0) > widest_beam) {
+    if (std::max(beam.u1 - beam.u0, beam.v1 - beam.v0) > widest_beam) {
         const std::uint64_t lower = lower_half(beam);
         return trace_beams<any_hit>(scene, rays, lower, splits + 1, hits) |
                trace_beams<any_hit>(scene, rays, active & ~lower, splits + 1, hits);

@@ -9,9 +9,9 @@
 #define RAYWALK_KERNELS_SINGLE_RAY_H
 #endif
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/ground/numeric.h"
@@ -23,41 +23,39 @@ HWY_BEFORE_NAMESPACE();
 namespace raywalk {
 namespace HWY_NAMESPACE {
 
-// A ray made ready: every lane holds the same ray.
+// A ray made ready. Plain numbers: they are spread over the lanes where they are used, which costs nothing, while
+// keeping them spread would cost a kilobyte of stores for each ray.
 struct SingleRay {
-    Vec3 origin, direction;
-    Real inverse_squared_length;  // 1 / direction . direction
-    Real t_min;
+    float origin[3], direction[3];
+    float inverse_squared_length;  // 1 / direction . direction
+    float t_min;
     // Slabs: t = bound * reciprocal - near or far offset, boxes grown by the padding.
-    Real reciprocal[3], near_offset[3], far_offset[3];
+    float reciprocal[3], near_offset[3], far_offset[3];
+    float padding[3];                 // in t
     int near_bound[3], far_bound[3];  // floats from the start of a BvhNode
-    // The same for the kd-tree, one number at a time.
-    float o[3], r[3], padding[3];
-    bool ascending[3];
 };
 
 // `padding`: what boxes are grown by, scene units.
 HWY_INLINE SingleRay make_single_ray(const Ray& ray, float padding) {
     SingleRay s;
-    s.origin = splat3(ray.origin);
-    s.direction = splat3(ray.direction);
-    s.inverse_squared_length = Real(1.0f) / dot(s.direction, s.direction);
-    s.t_min = Real(ray.t_min);
+    float squared_length = 0;
     for (int a = 0; a < 3; ++a) {
+        s.origin[a] = ray.origin[a];
+        s.direction[a] = ray.direction[a];
+        squared_length += ray.direction[a] * ray.direction[a];
         float d = ray.direction[a];
         if (!(std::fabs(d) >= smallest_direction)) d = std::copysign(smallest_direction, d);
         const float reciprocal = 1.0f / d;
-        s.o[a] = ray.origin[a];
-        s.r[a] = reciprocal;
-        s.padding[a] = padding * std::fabs(reciprocal);
-        s.ascending[a] = d > 0;
         const float offset = ray.origin[a] * reciprocal;
-        s.reciprocal[a] = Real(reciprocal);
-        s.near_offset[a] = Real(offset + s.padding[a]);
-        s.far_offset[a] = Real(offset - s.padding[a]);
+        s.reciprocal[a] = reciprocal;
+        s.padding[a] = padding * std::fabs(reciprocal);
+        s.near_offset[a] = offset + s.padding[a];
+        s.far_offset[a] = offset - s.padding[a];
         s.near_bound[a] = (d > 0 ? 0 : 3 * block_width) + a * block_width;
         s.far_bound[a] = (d > 0 ? 3 * block_width : 0) + a * block_width;
     }
+    s.inverse_squared_length = 1.0f / squared_length;
+    s.t_min = ray.t_min;
     return s;
 }
 
@@ -66,14 +64,14 @@ HWY_INLINE std::uint32_t enter_children(const BvhNode& node, const SingleRay& ra
     const float* bounds = &node.lower[0][0];  // lower and upper lie side by side
     static_assert(offsetof(BvhNode, upper) == sizeof(float) * 3 * block_width);
     const auto near_t = [&](int a) HWY_ATTR {
-        return mul_sub(load(bounds + ray.near_bound[a]), ray.reciprocal[a], ray.near_offset[a]);
+        return mul_sub(load(bounds + ray.near_bound[a]), Real(ray.reciprocal[a]), Real(ray.near_offset[a]));
     };
     const auto far_t = [&](int a) HWY_ATTR {
-        return mul_sub(load(bounds + ray.far_bound[a]), ray.reciprocal[a], ray.far_offset[a]);
+        return mul_sub(load(bounds + ray.far_bound[a]), Real(ray.reciprocal[a]), Real(ray.far_offset[a]));
     };
-    entry = max(max(near_t(0), near_t(1)), max(near_t(2), ray.t_min));
+    entry = max(max(near_t(0), near_t(1)), max(near_t(2), Real(ray.t_min)));
     const Real exit = min(min(far_t(0), far_t(1)), min(far_t(2), t_max));
-    return bits(entry * Real(1.0f - slab_slack) <= exit * Real(1.0f + slab_slack));
+    return bits(entry <= exit * Real(1.0f + 2 * slab_slack));
 }
 
 // Moeller and Trumbore, "Fast, minimum storage ray-triangle intersection" (1997), on sixteen triangles.
@@ -86,13 +84,14 @@ HWY_INLINE TriangleLanes intersect_triangles(const TriangleBlock& block, const S
     const Vec3 v1 = {load(block.corner[1][0]), load(block.corner[1][1]), load(block.corner[1][2])};
     const Vec3 v2 = {load(block.corner[2][0]), load(block.corner[2][1]), load(block.corner[2][2])};
     const Vec3 e1 = v0 - v1, e2 = v2 - v0, normal = cross(e2, e1);
-    const Vec3 c = v0 - ray.origin, q = cross(c, ray.direction);
-    const Real scale = Real(1.0f) / dot(normal, ray.direction);
+    const Vec3 direction = splat3(ray.direction);
+    const Vec3 c = v0 - splat3(ray.origin), q = cross(c, direction);
+    const Real scale = Real(1.0f) / dot(normal, direction);
     TriangleLanes r;
     r.u = dot(q, e2) * scale;
     r.v = dot(q, e1) * scale;
     r.t = dot(normal, c) * scale;
-    r.hit = (min(r.u, r.v) >= Real(-edge_slack)) & (r.u + r.v <= Real(1.0f + edge_slack)) & (r.t > ray.t_min) &
+    r.hit = (min(r.u, r.v) >= Real(-edge_slack)) & (r.u + r.v <= Real(1.0f + edge_slack)) & (r.t > Real(ray.t_min)) &
             (r.t <= t_max);
     return r;
 }
@@ -103,34 +102,36 @@ struct SphereLanes {
     Real t;
 };
 HWY_INLINE SphereLanes intersect_spheres(const SphereBlock& block, const SingleRay& ray, Real t_max) {
-    const Vec3 c = Vec3{load(block.center[0]), load(block.center[1]), load(block.center[2])} - ray.origin;
-    const Real radius = load(block.radius);
-    const Real middle = dot(c, ray.direction) * ray.inverse_squared_length;
-    const Vec3 p = c - ray.direction * middle;
+    const Vec3 direction = splat3(ray.direction);
+    const Vec3 c = Vec3{load(block.center[0]), load(block.center[1]), load(block.center[2])} - splat3(ray.origin);
+    const Real radius = load(block.radius), inverse_squared_length = Real(ray.inverse_squared_length);
+    const Real middle = dot(c, direction) * inverse_squared_length;
+    const Vec3 p = c - direction * middle;
     const Real discriminant = radius * radius - dot(p, p);
-    const Real half = sqrt(max(discriminant, Real(0.0f)) * ray.inverse_squared_length);
+    const Real half = sqrt(max(discriminant, Real(0.0f)) * inverse_squared_length);
     const Real first = middle - half;
     SphereLanes r;
-    r.t = select(first > ray.t_min, first, middle + half);
-    r.hit = (discriminant >= Real(0.0f)) & (r.t > ray.t_min) & (r.t <= t_max);
+    r.t = select(first > Real(ray.t_min), first, middle + half);
+    r.hit = (discriminant >= Real(0.0f)) & (r.t > Real(ray.t_min)) & (r.t <= t_max);
     return r;
 }
 
-// Takes the nearest of the lanes that hit, if it is nearer than `hit` or as near with a lower id.
-HWY_INLINE void take_nearest(std::uint32_t lanes_hit, Real t, const std::int32_t* ids, std::int32_t first_id,
-                             RayHit& hit, int& taken_lane) {
-    taken_lane = -1;
-    const float nearest = reduce_min(select(mask_of_bits(lanes_hit), t, Real(std::numeric_limits<float>::infinity())));
-    std::uint32_t equal = lanes_hit & bits(t == Real(nearest));
-    for (; equal != 0; equal &= equal - 1) {
-        const int l = std::countr_zero(equal);
+// Takes the nearest of the lanes that hit (seldom more than one), if it is nearer than `hit` or as near with a lower
+// id. Returns its lane, or -1.
+HWY_INLINE int take_nearest(std::uint32_t lanes_hit, Real t, const std::int32_t* ids, std::int32_t first_id,
+                            RayHit& hit) {
+    HWY_ALIGN float distance[lanes];
+    store(t, distance);
+    int taken = -1;
+    for (; lanes_hit != 0; lanes_hit &= lanes_hit - 1) {
+        const int l = std::countr_zero(lanes_hit);
         const std::int32_t id = first_id + ids[l];
-        if (nearest < hit.t || id < hit.id) {
-            hit.t = nearest;
-            hit.id = id;
-            taken_lane = l;
-        }
+        if (distance[l] > hit.t || (distance[l] == hit.t && id >= hit.id)) continue;
+        hit.t = distance[l];
+        hit.id = id;
+        taken = l;
     }
+    return taken;
 }
 
 // Tests the blocks of a leaf; true when an any-hit ray is done.
@@ -141,8 +142,7 @@ HWY_INLINE bool visit_triangles(const TriangleBlock* block, std::uint32_t blocks
         const std::uint32_t lanes_hit = bits(found.hit);
         if (lanes_hit == 0) continue;
         if constexpr (any_hit) return true;
-        int l;
-        take_nearest(lanes_hit, found.t, block->id, 0, hit, l);
+        const int l = take_nearest(lanes_hit, found.t, block->id, 0, hit);
         if (l >= 0) hit.u = lane(found.u, l), hit.v = lane(found.v, l);
     }
     return false;
@@ -156,9 +156,7 @@ HWY_INLINE bool visit_spheres(const SphereBlock* block, std::uint32_t blocks, st
         const std::uint32_t lanes_hit = bits(found.hit);
         if (lanes_hit == 0) continue;
         if constexpr (any_hit) return true;
-        int l;
-        take_nearest(lanes_hit, found.t, block->id, first_id, hit, l);
-        if (l >= 0) hit.u = hit.v = 0;
+        if (take_nearest(lanes_hit, found.t, block->id, first_id, hit) >= 0) hit.u = hit.v = 0;
     }
     return false;
 }
@@ -192,11 +190,12 @@ bool traverse_single(const CompiledScene& scene, const KdTree& tree, const Singl
     int depth = 0;
 
     // The part of the ray inside the tree's bounds.
-    KdInterval at = {0, lane(ray.t_min, 0), hit.t};
+    KdInterval at = {0, ray.t_min, hit.t};
     for (int a = 0; a < 3; ++a) {
-        const float t0 = (h.bounds.lower[a] - ray.o[a]) * ray.r[a], t1 = (h.bounds.upper[a] - ray.o[a]) * ray.r[a];
-        at.enter = std::fmax(at.enter, std::fmin(t0, t1) - ray.padding[a]);
-        at.leave = std::fmin(at.leave, std::fmax(t0, t1) + ray.padding[a]);
+        const float t0 = (h.bounds.lower[a] - ray.origin[a]) * ray.reciprocal[a],
+                    t1 = (h.bounds.upper[a] - ray.origin[a]) * ray.reciprocal[a];
+        at.enter = std::max(at.enter, std::min(t0, t1) - ray.padding[a]);
+        at.leave = std::min(at.leave, std::max(t0, t1) + ray.padding[a]);
     }
     if (!(at.enter <= at.leave)) return false;
 
@@ -204,18 +203,18 @@ bool traverse_single(const CompiledScene& scene, const KdTree& tree, const Singl
         KdNode node = tree.nodes[at.node];
         while (!node.leaf()) {
             const int axis = node.axis();
-            const float t = (node.split - ray.o[axis]) * ray.r[axis];
+            const float t = (node.split - ray.origin[axis]) * ray.reciprocal[axis];
             const std::uint32_t lower = node.index();
-            const std::uint32_t first = ray.ascending[axis] ? lower : lower + 1;
-            const std::uint32_t second = ray.ascending[axis] ? lower + 1 : lower;
+            const std::uint32_t first = ray.reciprocal[axis] > 0 ? lower : lower + 1;
+            const std::uint32_t second = ray.reciprocal[axis] > 0 ? lower + 1 : lower;
             const float t0 = t - ray.padding[axis], t1 = t + ray.padding[axis];
             if (t0 > at.leave) {
                 at.node = first;
             } else if (t1 < at.enter) {
                 at.node = second;
             } else {
-                stack[depth++] = {second, std::fmax(at.enter, t0), at.leave};
-                at = {first, at.enter, std::fmin(at.leave, t1)};
+                stack[depth++] = {second, std::max(at.enter, t0), at.leave};
+                at = {first, at.enter, std::min(at.leave, t1)};
             }
             node = tree.nodes[at.node];
         }
