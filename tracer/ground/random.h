@@ -65,30 +65,25 @@ HWY_INLINE Point2 aperture_sample(Int key, std::uint32_t n) {
     return kronecker(n, 0x3f3a0e29u, 0x8e11bc74u, 0, scramble(key ^ Int(0x1b873593)), scramble(key ^ Int(0x2545f491)));
 }
 
-// Visits each of `count` things once in every `count` steps, an n x n grid evenly by any few successive ones: steps of
-// about (0.755, 0.570) of its sides, as R2 has them.
-struct VisitingOrder {
-    std::uint32_t count, first, stride;
-    std::uint32_t operator()(std::uint64_t i) const {
-        return static_cast<std::uint32_t>((first + i % count * stride) % count);
-    }
+// One cell of a side x side grid of light points (side > 4) for each of sixteen strata, quarters of its sides: where a
+// sample goes, and how many cells it stands for. Each cell of a stratum comes up once in as many samples as it has
+// cells, so that the mean over samples is the mean over cells.
+inline constexpr std::uint32_t strata = 16;
+struct StratumCell {
+    std::uint32_t cell;  // row * side + column
+    float cells;
 };
-
-inline VisitingOrder visiting_order(std::uint32_t count, std::uint32_t seed) {
-    std::uint32_t side = 1;
-    while ((side + 1) * static_cast<std::uint64_t>(side + 1) <= count) ++side;
-    std::uint32_t stride =
-        static_cast<std::uint32_t>(0.7548777 * side) * side + static_cast<std::uint32_t>(0.5698403 * side);
-    const auto common_divisor = [](std::uint32_t a, std::uint32_t b) {
-        while (b != 0) {
-            const std::uint32_t rest = a % b;
-            a = b;
-            b = rest;
-        }
-        return a;
-    };
-    while (common_divisor(count, stride) != 1) ++stride;
-    return {count, scramble(seed ^ 0x68e31da4u) % count, stride % count};
+inline StratumCell stratum_cell(std::uint32_t side, std::uint32_t stratum, std::uint32_t sample, std::uint32_t seed) {
+    const std::uint32_t i = stratum / 4, j = stratum % 4;
+    const std::uint32_t first_row = side * i / 4, rows = side * (i + 1) / 4 - first_row;
+    const std::uint32_t first_column = side * j / 4, columns = side * (j + 1) / 4 - first_column;
+    // Row by row, every time around shifted by one column and every row by a golden section of them: a Latin square's
+    // order, begun elsewhere in each stratum.
+    const std::uint32_t start = scramble(seed + stratum * 0x9e3779b9u) % (rows * columns) + sample % (rows * columns);
+    const std::uint32_t row = start % rows, round = start / rows;
+    const std::uint32_t skew = (columns * 5 + 4) / 8;
+    const std::uint32_t column = (round + row * skew) % columns;
+    return {(first_row + row) * side + first_column + column, static_cast<float>(rows * columns)};
 }
 
 }  // namespace HWY_NAMESPACE

@@ -76,41 +76,51 @@ HWY_INLINE std::uint64_t face_light(const float light[3], ShadeBatch& shade, Bea
     return receiving;
 }
 
-// Adds one point's light to the sums of those who see it.
-HWY_INLINE void receive(std::uint64_t seeing, ShadeBatch& shade) {
+// Adds one point's light, `weight` times, to the sums of those who see it.
+HWY_INLINE void receive(std::uint64_t seeing, float weight, ShadeBatch& shade) {
     for (int g = 0; g < beam_rays / lanes; ++g) {
         const std::uint32_t lanes_seeing = lanes_of(seeing, g);
         if (lanes_seeing == 0) continue;
         const int at = g * lanes;
         const Mask sees = mask_of_bits(lanes_seeing);
-        const Real zero(0.0f);
-        store(load(shade.diffuse_sum + at) + select(sees, load(shade.diffuse + at), zero), shade.diffuse_sum + at);
-        store(load(shade.specular_sum + at) + select(sees, load(shade.specular + at), zero), shade.specular_sum + at);
+        const auto add = [&](const float* light, float* sum) HWY_ATTR {
+            const Real before = load(sum + at);
+            store(select(sees, mul_add(load(light + at), Real(weight), before), before), sum + at);
+        };
+        add(shade.diffuse, shade.diffuse_sum);
+        add(shade.specular, shade.specular_sum);
     }
 }
 
 // Adds what a whole light (all its points) gave, `radiance` each point, to shade.local.
-HWY_INLINE void receive_light(const float radiance[3], float weight, ShadeBatch& shade) {
+HWY_INLINE void receive_light(const float radiance[3], ShadeBatch& shade) {
     for (int at = 0; at < beam_rays; at += lanes) {
         const Real diffuse = load(shade.diffuse_sum + at), specular = load(shade.specular_sum + at);
         for (int channel = 0; channel < 3; ++channel) {
             const Real received = mul_add(diffuse, load(shade.color[channel] + at), specular);
             float* local = shade.local[channel] + at;
-            store(mul_add(received, Real(radiance[channel] * weight), load(local)), local);
+            store(mul_add(received, Real(radiance[channel]), load(local)), local);
         }
         store(Real(0.0f), shade.diffuse_sum + at);
         store(Real(0.0f), shade.specular_sum + at);
     }
 }
 
-// At most so many points of a light are used per sample unless the picture is made of one sample.
-inline constexpr std::uint32_t points_per_sample = 16;
+// The points of a light that one sample uses, each with a weight; the weights add up to the number of points. All of
+// them where there are few, or where the picture is made of one sample; else one of each stratum.
+struct LightChoice {
+    std::uint32_t used, side;  // side 0: all
+};
+inline LightChoice choose_points(const LightGroup& group, const SampleSettings& settings) {
+    std::uint32_t side = 0;
+    while (side * side < group.count) ++side;
+    if (settings.one_shot || group.count <= strata || side * side != group.count) return {group.count, 0};
+    return {strata, side};
+}
 
 // shade.local = light received directly by the hits of shade.lit, attenuated from light to hit to eye.
-// `coherent`: the hits lie near each other, as those of a tile do.
-inline void light_hits(const CompiledScene& scene, const SampleSettings& settings, std::uint32_t sample, bool coherent,
+inline void light_hits(const CompiledScene& scene, const SampleSettings& settings, std::uint32_t sample,
                        ShadeBatch& shade, BeamRays& shadow, RayCounts& counts) {
-    (void)coherent;
     for (int at = 0; at < beam_rays; at += lanes) {
         for (auto& channel : shade.local) store(Real(0.0f), channel + at);
         store(Real(0.0f), shade.diffuse_sum + at);
@@ -121,23 +131,20 @@ inline void light_hits(const CompiledScene& scene, const SampleSettings& setting
     if (shade.lit == 0) return;
     for (const LightGroup& group : scene.light_groups) {
         const LightPoint* points = scene.light_points.data() + group.first;
-        const bool all_points = settings.one_shot || group.count <= points_per_sample;
-        const std::uint32_t used = all_points ? group.count : points_per_sample;
-        const VisitingOrder order =
-            all_points ? VisitingOrder{group.count, 0, 1} : visiting_order(group.count, settings.seed);
+        const LightChoice choice = choose_points(group, settings);
         bool received = false;
-        for (std::uint32_t i = 0; i < used; ++i) {
-            const LightPoint& point = points[all_points ? i : order(std::uint64_t{sample} * used + i)];
-            const std::uint64_t receiving = face_light(point.position, shade, shadow);
+        for (std::uint32_t i = 0; i < choice.used; ++i) {
+            StratumCell point = {i, 1.0f};
+            if (choice.side != 0) point = stratum_cell(choice.side, i, sample, settings.seed);
+            const std::uint64_t receiving = face_light(points[point.cell].position, shade, shadow);
             if (receiving == 0) continue;
             counts.shadow += static_cast<std::uint64_t>(std::popcount(receiving));
             const std::uint64_t seeing = receiving & ~occluded_beam(scene, shadow, receiving);
             if (seeing == 0) continue;
-            receive(seeing, shade);
+            receive(seeing, point.cells, shade);
             received = true;
         }
-        if (received)
-            receive_light(points[0].radiance, static_cast<float>(group.count) / static_cast<float>(used), shade);
+        if (received) receive_light(points[0].radiance, shade);
     }
 }
 
