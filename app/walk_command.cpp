@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 
 #include "app/commands.h"
 #include "app/console.h"
@@ -28,12 +29,23 @@ nlohmann::json percentiles(std::vector<double> seconds) {
     return result;
 }
 
+// The properties of a scene's Viewer that open it where the walk ended.
+nlohmann::json viewer_of(const Camera& camera) {
+    const auto text = [](const glm::dvec3& v) {
+        char line[96];
+        std::snprintf(line, sizeof line, "%.17g %.17g %.17g", v.x, v.y, v.z);
+        return std::string(line);
+    };
+    return {{"center", text(camera.eye)}, {"target", text(camera.eye + camera.direction)}, {"up", text(camera.north)}};
+}
+
 nlohmann::json walk_statistics(const Options& options, const LoadedScene& loaded, const Renderer& renderer,
                                const RenderThread& render, const WalkRecord& record, const std::string& device) {
     nlohmann::json statistics = statistics_of(options, loaded, renderer, render.traced_seconds());
     statistics["frames"] = {{"moving", percentiles(render.moving_frame_seconds())},
                             {"answer", percentiles(record.answer_seconds)},
                             {"present", percentiles(record.present_seconds)}};
+    statistics["viewer"] = viewer_of(record.camera);
     statistics["device"] = device;
     return statistics;
 }

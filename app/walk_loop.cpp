@@ -132,6 +132,7 @@ WalkRecord walk_loop(Window& window, Presenter& presenter, RenderThread& render,
         if (setup.quit_at_once && presenter.shown_frame().samples > 0) break;
         window.wait(walk.patience(Window::now()));
     }
+    walk.record.camera = walk.view.camera;
     return std::move(walk.record);
 }
 
