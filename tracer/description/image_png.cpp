@@ -52,8 +52,8 @@ void on_flush(png_structp) {}
 bool read_header(PngTask& task) {
     if (setjmp(png_jmpbuf(task.png))) return false;
     png_set_user_limits(task.png, 0x7FFF'FFFF, 0x7FFF'FFFF);  // the budget is checked by the caller
-    png_set_chunk_malloc_max(task.png, 8 << 20);              // a chunk of a small file may claim gigabytes
-    png_set_keep_unknown_chunks(task.png, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
+    // Only what makes the pixels is looked at: a text or a profile of a small file may claim gigabytes.
+    png_set_keep_unknown_chunks(task.png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_set_read_fn(task.png, &task, on_read);
     png_read_info(task.png, task.info);
     png_set_expand(task.png);

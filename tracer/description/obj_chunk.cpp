@@ -129,6 +129,8 @@ void ChunkParser::parse_line() {
         parse_normal();
     else if (p_[0] == '#')
         p_ = static_cast<const char*>(std::memchr(p_, '\n', static_cast<std::size_t>(end_ - p_) + 1));
+    else if (p_[0] == 'v' && p_[1] == 't' && is_blank(p_[2]))
+        skip_line();
     else if (p_[0] != '\n')
         parse_other();
     if (*p_ != '\n') skip_line();
@@ -212,13 +214,14 @@ void ChunkParser::parse_normal() {
 // Reads a whole number at p_ as an index into a list of which `count` entries came before in this chunk.
 inline bool ChunkParser::parse_index(std::uint32_t& index, std::size_t count, const char* list) {
     const char* begin = p_;
-    const bool negative = *p_ == '-';
-    if (negative) ++p_;
+    const bool negative = *begin == '-';
+    const char* digits = begin + negative;
+    const char* p = digits;
     std::uint64_t value = 0;
-    const char* digits = p_;
-    while (is_digit(*p_))
-        value = std::min<std::uint64_t>(value * 10 + static_cast<std::uint64_t>(*p_++ - '0'), 1ull << 40);
-    if (p_ == digits) {
+    while (is_digit(*p)) value = value * 10 + static_cast<std::uint64_t>(*p++ - '0');
+    p_ = p;
+    if (p - digits > 19) value = ~std::uint64_t{0};  // it may have wrapped around
+    if (p == digits) {
         const char* word = begin;
         while (word > line_start_ && !ends_word(word[-1])) --word;
         fail(word, quoted(word_at(word, end_)) + " is not a corner", "expected: V, V/VT, V//VN or V/VT/VN");
