@@ -75,8 +75,7 @@ TEST_P(EveryFormat, IsWrittenFromFloatsToo) {
     EXPECT_LE(error_of(read(file), pattern_bytes(16, 16)), jpeg ? 8 : hdr ? 2 : 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Image, EveryFormat,
-                         testing::Values(".png", ".PNG", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".tiff"));
+INSTANTIATE_TEST_SUITE_P(Image, EveryFormat, testing::Values(".png", ".PNG", ".jpg", ".jpeg", ".exr", ".hdr", ".tif"));
 
 TEST(ImageTest, PfmHoldsTheFloatsBottomRowFirst) {
     const TestFolder folder;
@@ -124,7 +123,7 @@ TEST_P(EveryFormat, TruncatedOrDamagedIsRefusedOrReadButNeverCrashes) {
     write_image(file, 64, 64, pattern_bytes(64, 64));
     const std::string whole = content_of(file);
     const bool light = std::string(GetParam()).starts_with(".j") || std::string(GetParam()).starts_with(".p");
-    const std::size_t cuts = light ? 40 : 4;  // the other formats' decoder takes long to start
+    const std::size_t cuts = light ? 40 : 2;  // the other formats' decoder takes long to start
     for (std::size_t cut = 0; cut < whole.size(); cut += 1 + whole.size() / cuts) {
         refusal_of(folder.write("cut", whole.substr(0, cut)));
         std::string damaged = whole;

@@ -42,7 +42,7 @@ SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits) {
     for (const Mesh& mesh : scene.meshes) {
         if (!read.files.contains(mesh.file)) {
             try {
-                TriangleMesh triangle_mesh = read_obj(mesh.file, limits, read.warnings);
+                TriangleMesh triangle_mesh = read_obj(mesh.file, limits, read.warnings, mesh.where);
                 if (const std::string problem = placement_problem(triangle_mesh); !problem.empty())
                     throw InputError(error_at(mesh.where,
                                               "mesh '" + mesh.file.string() + "' cannot be placed: " + problem,
