@@ -8,10 +8,6 @@
 
 namespace raywalk {
 
-inline std::uint32_t blocks_for(std::size_t shapes) {
-    return static_cast<std::uint32_t>((shapes + block_width - 1) / block_width);
-}
-
 // Fills blocks_for(ids.size()) blocks from `blocks` on with the triangles ids[i]; empty lanes are cleared.
 inline void fill_blocks(TriangleBlock* blocks, std::span<const std::uint32_t> ids,
                         std::span<const TriangleCorners> triangles) {

@@ -15,10 +15,15 @@ struct alignas(32) Primitive {
     float lower[3];
     std::uint32_t tagged_id;  // with a bit that makes it a normal number in vector arithmetic: denormals are slow
     float upper[3];
-    std::uint32_t padding = 0;
+    std::uint32_t padding;
 
     static constexpr std::uint32_t tag = 0x40000000u;
     [[nodiscard]] std::uint32_t id() const { return tagged_id & ~tag; }
+};
+
+struct Primitives {
+    std::unique_ptr<Primitive[]> shapes;
+    std::uint32_t count = 0;
 };
 
 // Primitives [begin, end) and their box; split at `middle`, or a leaf where that is 0.
@@ -37,7 +42,7 @@ struct Halves {
 
 // The split of a range lies at its middle: no two ranges share one, so tasks write without asking each other.
 struct BinaryTree {
-    AlignedVector<Primitive> primitives;
+    Primitives primitives;
     std::unique_ptr<Halves[]> split_at;  // by middle
     Range root;
     std::uint64_t binned = 0;  // primitives binned and moved, over all ranges
@@ -55,7 +60,7 @@ struct BinaryTree {
 
 inline constexpr std::uint32_t largest_leaf = 8 * 16;  // of shapes whose centroids coincide; else one block of 16
 
-// Boxes of the shapes that are to be sorted; called inside or outside a parallel region.
-BinaryTree build_binary(AlignedVector<Primitive> primitives);
+// Sorts the primitives into a tree, by all threads.
+BinaryTree build_binary(Primitives primitives);
 
 }  // namespace raywalk::bvh

@@ -16,15 +16,22 @@ namespace bvh {
 namespace {
 
 template <class Shape>
-AlignedVector<Primitive> primitives_of(std::span<const Shape> shapes) {
-    AlignedVector<Primitive> primitives;
-    primitives.reserve(shapes.size());
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-        if (!finite(shapes[i])) continue;
+Primitives primitives_of(std::span<const Shape> shapes) {
+    Primitives primitives{std::make_unique_for_overwrite<Primitive[]>(shapes.size()),
+                          static_cast<std::uint32_t>(shapes.size())};
+    bool all_finite = true;
+#pragma omp parallel for schedule(static) reduction(&& : all_finite)
+    for (std::uint32_t i = 0; i < primitives.count; ++i) {
         const Bounds box = bounds_of(shapes[i]);
-        primitives.push_back({{box.lower.x, box.lower.y, box.lower.z},
-                              static_cast<std::uint32_t>(i) | Primitive::tag,
-                              {box.upper.x, box.upper.y, box.upper.z}});
+        primitives.shapes[i] = {
+            {box.lower.x, box.lower.y, box.lower.z}, i | Primitive::tag, {box.upper.x, box.upper.y, box.upper.z}, 0};
+        all_finite = all_finite && finite(shapes[i]);
+    }
+    if (!all_finite) {
+        Primitive* const begin = primitives.shapes.get();
+        Primitive* const end = std::remove_if(begin, begin + primitives.count,
+                                              [&](const Primitive& p) { return !finite(shapes[p.id()]); });
+        primitives.count = static_cast<std::uint32_t>(end - begin);
     }
     return primitives;
 }
@@ -162,7 +169,8 @@ Hierarchy build_bvh(const Shapes& shapes, BuildStatistics* statistics) {
     for (std::size_t i = 0; i < collapse.leaves.size(); ++i) {
         const bvh::LeafRange& leaf = collapse.leaves[i];
         std::uint32_t ids[bvh::largest_leaf];
-        for (std::uint32_t k = leaf.begin; k < leaf.end; ++k) ids[k - leaf.begin] = leaf.tree->primitives[k].id();
+        for (std::uint32_t k = leaf.begin; k < leaf.end; ++k)
+            ids[k - leaf.begin] = leaf.tree->primitives.shapes[k].id();
         const std::span<const std::uint32_t> of_leaf(ids, leaf.end - leaf.begin);
         if (leaf.tree == &triangles)
             fill_blocks(hierarchy.triangle_blocks.data() + leaf.first_block, of_leaf, shapes.triangles);

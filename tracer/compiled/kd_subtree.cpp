@@ -62,18 +62,17 @@ void Subtree::add_leaf(std::uint32_t node, const Node& of, const Slots& slots, c
     gather_neighbours(of_leaf.first(triangles), slots.box);
     gather_neighbours(of_leaf.last(spheres), slots.box);
     for (std::uint32_t& shape : of_leaf) shape = slots.shape[shape];
-    const auto blocks = [](std::uint32_t n) { return (n + block_width - 1) / block_width; };
-    leaves.push_back({triangle_blocks, sphere_blocks, blocks(triangles), blocks(spheres)});
+    leaves.push_back({triangle_blocks, sphere_blocks, blocks_for(triangles), blocks_for(spheres)});
     leaf_start.push_back(static_cast<std::uint32_t>(shapes.size()));
-    triangle_blocks += blocks(triangles);
-    sphere_blocks += blocks(spheres);
+    triangle_blocks += blocks_for(triangles);
+    sphere_blocks += blocks_for(spheres);
     nodes[node] = {0, static_cast<std::uint32_t>(leaves.size() - 1) << 2 | 3};
 
     counts.leaves += 1;
     counts.empty_leaves += triangles + spheres == 0;
     counts.references += triangles + spheres;
     counts.depth = std::max(counts.depth, of.depth);
-    counts.cost += half_area(of.cell) * input.options.intersection_cost * (blocks(triangles) + blocks(spheres));
+    counts.cost += half_area(of.cell) * input.options.intersection_cost * (blocks_for(triangles) + blocks_for(spheres));
 }
 
 Subtree SubtreeBuilder::build(const Input& input, Slots& slots, const Node& root) {

@@ -11,12 +11,6 @@
 
 namespace raywalk::kd {
 
-// Expected cost of testing the shapes of a leaf, in blocks: mostly whole blocks, a little every shape, so that the
-// cost still falls while a block empties.
-inline double leaf_cost(std::uint32_t shapes) {
-    return static_cast<double>(48 * ((shapes + block_width - 1) / block_width) + shapes) / 64;
-}
-
 // A plane and the expected cost of the node split there. Events [0, first_upper) of its axis lie below.
 struct Split {
     double cost = std::numeric_limits<double>::infinity();
