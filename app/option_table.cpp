@@ -118,7 +118,7 @@ const OptionSpec table[] = {
 
     {"--threads", "", "N", speed, "threads (default: every core this process may use)",
      [](Line& line, Value value) { line.options.threads = integer<int>("--threads", value, 1, 1024); }},
-    {"--accelerator", "", "NAME", speed, "kdtree or bvh: same picture, another way to find what a ray hits",
+    {"--accelerator", "", "NAME", speed, "bvh (default) or kdtree: same picture, another way to find what a ray hits",
      [](Line& line, Value value) {
          line.accelerator_given = true;
          line.options.compile.accelerator =

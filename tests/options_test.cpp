@@ -188,6 +188,7 @@ TEST(Options, ContradictionsAreExplained) {
     EXPECT_THAT(error_of({"a.scene", "--check", "--stats", "-"}), HasSubstr("--check makes none"));
     EXPECT_THAT(error_of({"a.scene", "--accelerator", "bvh", "--leaf-limit", "4"}), HasSubstr("--accelerator kdtree"));
     EXPECT_EQ(parsed({"a.scene", "--leaf-limit", "4"}).compile.accelerator, Accelerator::kdtree);
+    EXPECT_EQ(parsed({"a.scene"}).compile.accelerator, Accelerator::bvh);
 }
 
 TEST(Options, AFramePatternHasOneNumber) {
