@@ -100,13 +100,12 @@ void check_picture_name(std::string_view option, const std::filesystem::path& fi
         "; use .png .jpg .exr .pfm .hdr .tif");
 }
 
-// One %d (or %4d, %04d) and no other conversion: the name is made by printf's rules.
+// One %d (or %4d, %04d) and no other %.
 bool is_frame_pattern(std::string_view pattern) {
     int numbers = 0;
     for (std::size_t i = 0; i < pattern.size(); ++i) {
         if (pattern[i] != '%') continue;
         ++i;
-        if (i < pattern.size() && pattern[i] == '%') continue;
         std::size_t digits = 0;
         while (i < pattern.size() && pattern[i] >= '0' && pattern[i] <= '9') ++i, ++digits;
         if (digits > 2 || i == pattern.size() || pattern[i] != 'd') return false;

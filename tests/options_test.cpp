@@ -195,9 +195,10 @@ TEST(Options, AFramePatternHasOneNumber) {
     const auto with = [](const char* pattern) {
         return std::vector<std::string>{"a.scene", "--capture", "a.png", "--keys", "w", "--frames", pattern};
     };
-    for (const char* pattern : {"%d.png", "walk-%04d.png", "a/b-%3d.jpg", "100%%-%d.png"})
+    for (const char* pattern : {"%d.png", "walk-%04d.png", "a/b-%3d.jpg"})
         EXPECT_EQ(parsed(with(pattern)).frames, pattern);
-    for (const char* pattern : {"walk.png", "%d-%d.png", "%s.png", "%n%d.png", "%0400d.png", "%ld.png", "%"})
+    for (const char* pattern :
+         {"walk.png", "%d-%d.png", "%s.png", "%n%d.png", "%0400d.png", "%ld.png", "100%%-%d.png", "%"})
         EXPECT_THAT(error_of(with(pattern)), HasSubstr("expected one number in the name")) << pattern;
     EXPECT_THAT(error_of(with("walk-%d.gif")), HasSubstr("unknown kind of picture"));
 }

@@ -45,7 +45,7 @@ class Builder {
 
     Branch build(OwnedNode& root) {
         Branch top;
-#pragma omp parallel
+#pragma omp parallel if (root.node.shapes > task_shapes)
 #pragma omp single
         errors_.guard([&] { grow(root, top); });
         errors_.rethrow();
@@ -207,7 +207,7 @@ OwnedNode root_of(const Input& input, Bounds& bounds) {
     root.node.cell = bounds;
 
     TaskErrors errors;
-#pragma omp parallel for schedule(static, 1)
+#pragma omp parallel for schedule(static, 1) if (root.node.shapes > task_shapes)
     for (int axis = 0; axis < 3; ++axis)
         errors.guard([&] {
             root.allocate(axis, 2 * std::size_t{root.node.shapes});
@@ -257,7 +257,7 @@ class Assembler {
         hierarchy.triangle_blocks.resize(next_.triangle_blocks);
         hierarchy.sphere_blocks.resize(next_.sphere_blocks);
         for (const auto& [index, node] : inner) tree.nodes[index] = node;
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (placed.size() > 1)
         for (std::size_t i = 0; i < placed.size(); ++i) copy(placed[i], input, hierarchy, tree);
     }
 
