@@ -19,7 +19,8 @@ the walk:
   W S A D        a small step forward, back, left, right (hold to go on)
   arrow keys     turn up, down, left, right (hold to go on)
   T              orthographic or perspective projection
-  Q              quit
+  [ ]            darker, brighter
+  Q, Escape      quit
 )";
 
 constexpr std::string_view ending = R"(

@@ -91,7 +91,7 @@ class RenderThread {
     Clock::time_point last_publish_;
     double last_trace_seconds_ = 0;
     std::vector<double> moving_frame_seconds_;
-    double traced_seconds_ = 0;
+    std::atomic<double> traced_seconds_ = 0;
 
     std::thread thread_;
 };

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double present_interval = 1.0 / 60;  // seconds; the driver's FIFO does not always hold frames back
 constexpr double moving_interval = 1.0 / 120;  // between steps of the camera by held keys
+constexpr double standing_after = 0.15;        // a key that is held in vain, at the end of a turn, moves nothing
 constexpr double idle_interval = 0.2;          // between looks for a signal to end
 constexpr double title_interval = 0.25;
 constexpr float exposure_per_press = 1.25f;
@@ -44,7 +45,7 @@ struct Walk {
 
     View view = setup.view;
     bool visible = false, present_again = false, title_stale = false;
-    double next_present = 0, next_title = 0;
+    double next_present = 0, next_title = 0, last_change = 0;
     std::uint64_t newest_id = 1;
     struct Change {
         std::uint64_t id;
@@ -80,9 +81,12 @@ void Walk::follow_input(double now) {
         window.exposure_presses = 0;
     }
     view.camera = window.input.advance(view.camera, now);
-    const std::uint64_t id = render.show(view, window.input.moving());
-    if (id != newest_id && !unanswered) unanswered = {id, now};
+    const bool moving = window.input.moving() && now - last_change < standing_after;
+    const std::uint64_t id = render.show(view, moving);
+    if (id == newest_id) return;
     newest_id = id;
+    last_change = now;
+    if (!unanswered) unanswered = {id, now};
 }
 
 void Walk::show_frame(double now) {
