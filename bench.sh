@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# ./bench.sh [--quick] [--json FILE] [--mesh FILE]... [--only PART]...: measures Raywalk against Embree, tinyobjloader and assimp,
-# which it installs where they are missing. Markdown goes to stdout and, after a whole run, into README.md between its
-# benchmark marks, together with the plot of growth. Exit code 1: contenders disagree about what was hit.
+# ./bench.sh [--quick] [--json FILE] [--mesh FILE]... [--only PART]...: measures Raywalk against Embree, tinyobjloader and
+# assimp, which it installs where they are missing. Markdown goes to stdout and, after a whole run, into README.md between
+# its benchmark marks; the plot of growth goes beside its pictures. Exit code 1: contenders disagree about what was hit.
 set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
 source "$root/tools/prepare.sh"
@@ -26,7 +26,7 @@ fi
 readme=$root/README.md
 if grep -q '^<!-- benchmark -->$' "$readme" 2>/dev/null && grep -q '^<!-- end of benchmark -->$' "$readme"; then
     awk -v table="$root/build/bench/benchmark.md" '
-        /^<!-- benchmark -->$/ { print; print ""; while ((getline line < table) > 0) print line; print ""; inside = 1; next }
+        /^<!-- benchmark -->$/ { print; while ((getline line < table) > 0) print line; inside = 1; next }
         /^<!-- end of benchmark -->$/ { inside = 0 }
         !inside' "$readme" >"$readme.new"
     mv "$readme.new" "$readme"
