@@ -118,9 +118,45 @@ inline LightChoice choose_points(const LightGroup& group, const SampleSettings& 
     return {strata, side};
 }
 
+// Whether the ends of the active shadow rays lie near each other as the light sees them: beams pay off then,
+// measured 1.45 times as fast behind a planar mirror; off curved mirrors single rays are, 1.25 times.
+inline bool lie_together(const BeamRays& shadow, std::uint64_t active) {
+    float extent = 0, reach = 0;
+    for (const auto& along : shadow.direction) {
+        Real lower(__builtin_inff()), upper(-__builtin_inff());
+        for (int g = 0; g < beam_rays / lanes; ++g) {
+            const Mask mine = mask_of_bits(lanes_of(active, g));
+            const Real end = load(along + g * lanes);
+            lower = select(mine, min(end, lower), lower);
+            upper = select(mine, max(end, upper), upper);
+        }
+        const float from = reduce_min(lower), to = reduce_max(upper);
+        extent = extent > to - from ? extent : to - from;
+        const float farther = to > -from ? to : -from;
+        reach = reach > farther ? reach : farther;
+    }
+    return extent <= 0.25f * reach;
+}
+
+// Which of the active shadow rays meet anything. `of_camera_rays`: they go to the hits of a tile's camera rays.
+inline std::uint64_t shadowed(const CompiledScene& scene, const BeamRays& shadow, std::uint64_t active,
+                              bool of_camera_rays) {
+    if (of_camera_rays || lie_together(shadow, active)) return occluded_beam(scene, shadow, active);
+    std::uint64_t result = 0;
+    for (; active != 0; active &= active - 1) {
+        const int i = std::countr_zero(active);
+        const Ray ray = {{shadow.origin[0], shadow.origin[1], shadow.origin[2]},
+                         {shadow.direction[0][i], shadow.direction[1][i], shadow.direction[2][i]},
+                         shadow.t_min[i],
+                         shadow.t_max[i]};
+        if (occluded_ray(scene, ray)) result |= std::uint64_t{1} << i;
+    }
+    return result;
+}
+
 // shade.local = light received directly by the hits of shade.lit, attenuated from light to hit to eye.
 inline void light_hits(const CompiledScene& scene, const SampleSettings& settings, std::uint32_t sample,
-                       ShadeBatch& shade, BeamRays& shadow, RayCounts& counts) {
+                       bool of_camera_rays, ShadeBatch& shade, BeamRays& shadow, RayCounts& counts) {
     for (int at = 0; at < beam_rays; at += lanes) {
         for (auto& channel : shade.local) store(Real(0.0f), channel + at);
         store(Real(0.0f), shade.diffuse_sum + at);
@@ -139,7 +175,7 @@ inline void light_hits(const CompiledScene& scene, const SampleSettings& setting
             const std::uint64_t receiving = face_light(points[point.cell].position, shade, shadow);
             if (receiving == 0) continue;
             counts.shadow += static_cast<std::uint64_t>(std::popcount(receiving));
-            const std::uint64_t seeing = receiving & ~occluded_beam(scene, shadow, receiving);
+            const std::uint64_t seeing = receiving & ~shadowed(scene, shadow, receiving, of_camera_rays);
             if (seeing == 0) continue;
             receive(seeing, point.cells, shade);
             received = true;

@@ -186,7 +186,7 @@ void shade_hits(const SampleContext& c, int depth, int first, std::uint64_t acti
         const Int pixel = depth == 0 ? lane_numbers() + Int(at) : load(queue.pixel + q);
         spawn(hit, s, m, offset, length, weight, load(queue.medium + q), pixel, next, c.counts);
     }
-    light_hits(scene, c.job.settings, c.sample, shade, c.scratch.shadow, c.counts);
+    light_hits(scene, c.job.settings, c.sample, depth == 0, shade, c.scratch.shadow, c.counts);
     const std::int32_t* pixel = depth == 0 ? nullptr : queue.pixel + first;
     for (int g = 0; g < beam_rays / lanes; ++g)
         if (hit_lanes[g] != 0) add_radiance(shade, hit_lanes[g], g, pixel, c.scratch.radiance);
