@@ -39,34 +39,6 @@ struct Branch {
     Counts counts;  // of this split alone
 };
 
-class Builder {
-  public:
-    explicit Builder(const Input& input) : input_(input), workers_(static_cast<std::size_t>(omp_get_max_threads())) {}
-
-    Branch build(OwnedNode& root) {
-        Branch top;
-#pragma omp parallel if (root.node.shapes > task_shapes)
-#pragma omp single
-        errors_.guard([&] { grow(root, top); });
-        errors_.rethrow();
-        return top;
-    }
-
-  private:
-    void grow(OwnedNode& owned, Branch& branch) {
-        if (owned.node.shapes <= task_shapes || !split(owned, branch)) {
-            SubtreeBuilder& worker = workers_[static_cast<std::size_t>(omp_get_thread_num())];
-            branch.subtree = std::make_unique<Subtree>(worker.build(input_, owned.slots, owned.node));
-        }
-    }
-    bool split(OwnedNode& owned, Branch& branch);
-    void grow_children(std::array<std::shared_ptr<OwnedNode>, 2> children, Branch& branch);
-
-    const Input& input_;
-    std::vector<SubtreeBuilder> workers_;
-    TaskErrors errors_;
-};
-
 // Sorts the slots of a node by side and numbers them anew for each child, in the order of the split's axis.
 struct Classes {
     std::vector<std::uint32_t> target;  // by slot, see distribute
@@ -91,33 +63,118 @@ Classes classify(const Node& node, const Slots& slots, const Split& split) {
     return classes;
 }
 
-bool Builder::split(OwnedNode& owned, Branch& branch) {
-    const Node& node = owned.node;
-    const KdOptions& options = input_.options;
-    if (node.depth >= input_.depth_limit) return false;
+// Gives each child its slots: whole shapes where `classes` says, then the parts of straddlers, whose events it makes.
+void fill_slots(const Slots& from, const Classes& classes, const std::vector<Parts>& parts,
+                std::array<std::uint32_t, 2> next_part, std::array<Slots*, 2> to, NewEvents& new_events) {
+    for (std::size_t slot = 0; slot < classes.target.size(); ++slot) {
+        const std::uint32_t target = classes.target[slot];
+        if (target == straddles) continue;
+        Slots& child = *to[target >> 31];
+        child.shape[target & slot_mask] = from.shape[slot];
+        child.box[target & slot_mask] = from.box[slot];
+    }
+    new_events.clear();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const Bounds* box[2] = {&parts[i].lower, &parts[i].upper};
+        for (int side = 0; side < 2; ++side) {
+            if (box[side]->empty()) continue;
+            const std::uint32_t slot = next_part[side]++;
+            to[side]->shape[slot] = from.shape[classes.straddlers[i]];
+            to[side]->box[slot] = *box[side];
+            new_events.add(side, slot, *box[side]);
+        }
+    }
+    new_events.sort();
+}
 
+class Builder {
+  public:
+    explicit Builder(const Input& input) : input_(input), workers_(static_cast<std::size_t>(omp_get_max_threads())) {}
+
+    Branch build(OwnedNode& root) {
+        Branch top;
+#pragma omp parallel if (root.node.shapes > task_shapes)
+#pragma omp single
+        errors_.guard([&] { grow(root, top); });
+        errors_.rethrow();
+        return top;
+    }
+
+  private:
+    void grow(OwnedNode& owned, Branch& branch) {
+        if (owned.node.shapes <= task_shapes || !split(owned, branch)) {
+            SubtreeBuilder& worker = workers_[static_cast<std::size_t>(omp_get_thread_num())];
+            branch.subtree = std::make_unique<Subtree>(worker.build(input_, owned.slots, owned.node));
+        }
+    }
+    using Children = std::array<std::shared_ptr<OwnedNode>, 2>;
+
+    // False where the node had better be a leaf; else the branch and all below it are done.
+    bool split(OwnedNode& owned, Branch& branch);
+    [[nodiscard]] Split best_split(const Node& node) const;
+    // The parts of the straddlers, in their order.
+    [[nodiscard]] std::vector<Parts> clip(const OwnedNode& owned, const Classes& classes, const Split& split) const;
+    // Copies and merges the events of each axis into the children.
+    void distribute_events(const Node& node, const Classes& classes, const NewEvents& new_events, Children& children);
+    void grow_children(Children children, Branch& branch);
+
+    const Input& input_;
+    std::vector<SubtreeBuilder> workers_;
+    TaskErrors errors_;
+};
+
+Split Builder::best_split(const Node& node) const {
     std::array<Split, 3> splits;
     for (int axis = 0; axis < 3; ++axis) {
-#pragma omp task shared(splits, node, options) firstprivate(axis)
-        splits[axis] = sweep(node.axis(axis), axis, node.shapes, node.cell, options);
+#pragma omp task shared(splits, node) firstprivate(axis)
+        splits[axis] = sweep(node.axis(axis), axis, node.shapes, node.cell, input_.options);
     }
 #pragma omp taskwait
-    const Split best = cheapest(splits);
-    if (best.cost >= options.intersection_cost * leaf_cost(node.shapes)) return false;
+    return cheapest(splits);
+}
 
-    Classes classes = classify(node, owned.slots, best);
-    const std::size_t straddlers = classes.straddlers.size();
-    std::vector<Parts> parts(straddlers);
+std::vector<Parts> Builder::clip(const OwnedNode& owned, const Classes& classes, const Split& split) const {
     constexpr std::size_t grain = 512;
-    for (std::size_t begin = 0; begin < straddlers; begin += grain) {
-#pragma omp task shared(parts, classes, owned, best) firstprivate(begin, straddlers)
-        for (std::size_t i = begin; i < std::min(begin + grain, straddlers); ++i) {
+    const std::size_t count = classes.straddlers.size();
+    std::vector<Parts> parts(count);
+    for (std::size_t begin = 0; begin < count; begin += grain) {
+#pragma omp task shared(parts, classes, owned, split) firstprivate(begin, count)
+        for (std::size_t i = begin; i < std::min(begin + grain, count); ++i) {
             const std::uint32_t slot = classes.straddlers[i];
-            parts[i] = input_.split(owned.slots.shape[slot], owned.slots.box[slot], best.axis, best.position);
+            parts[i] = input_.split(owned.slots.shape[slot], owned.slots.box[slot], split.axis, split.position);
         }
     }
 #pragma omp taskwait
+    return parts;
+}
 
+void Builder::distribute_events(const Node& node, const Classes& classes, const NewEvents& new_events,
+                                Children& children) {
+    for (int axis = 0; axis < 3; ++axis) {
+#pragma omp task shared(children, classes, node, new_events) firstprivate(axis)
+        errors_.guard([&] {
+            for (int side = 0; side < 2; ++side)
+                children[side]->allocate(axis, 2 * std::size_t{classes.sizes[side]} + 1);
+            Event* const lower = children[0]->storage[axis].get();
+            Event* const upper = children[1]->storage[axis].get();
+            const Distributed written =
+                distribute(node.axis(axis), classes.target.data(), new_events.of(0, axis).data(),
+                           new_events.of(1, axis).data(), lower, upper);
+            children[0]->node.events[axis] = {lower, written.lower};
+            children[1]->node.events[axis] = {upper, written.upper};
+        });
+    }
+#pragma omp taskwait
+}
+
+bool Builder::split(OwnedNode& owned, Branch& branch) {
+    const Node& node = owned.node;
+    if (node.depth >= input_.depth_limit) return false;
+    const Split best = best_split(node);
+    if (best.cost >= input_.options.intersection_cost * leaf_cost(node.shapes)) return false;
+
+    Classes classes = classify(node, owned.slots, best);
+    const std::vector<Parts> parts = clip(owned, classes, best);
     const std::array<std::uint32_t, 2> whole = classes.sizes;
     for (const Parts& p : parts) {
         classes.sizes[0] += !p.lower.empty();
@@ -126,58 +183,27 @@ bool Builder::split(OwnedNode& owned, Branch& branch) {
     if (std::uint64_t{classes.sizes[0]} + classes.sizes[1] > node.budget) return false;
 
     const std::array<Node, 2> child = children_of(node, best, classes.sizes[0], classes.sizes[1]);
-    std::array<std::shared_ptr<OwnedNode>, 2> children{std::make_shared<OwnedNode>(), std::make_shared<OwnedNode>()};
+    Children children{std::make_shared<OwnedNode>(), std::make_shared<OwnedNode>()};
     for (int side = 0; side < 2; ++side) {
         children[side]->node = child[side];
         children[side]->slots.shape.resize(classes.sizes[side]);
         children[side]->slots.box.resize(classes.sizes[side]);
     }
-    for (std::size_t slot = 0; slot < classes.target.size(); ++slot) {
-        const std::uint32_t target = classes.target[slot];
-        if (target == straddles) continue;
-        Slots& to = children[target >> 31]->slots;
-        to.shape[target & slot_mask] = owned.slots.shape[slot];
-        to.box[target & slot_mask] = owned.slots.box[slot];
-    }
     NewEvents new_events;
-    new_events.clear();
-    std::array<std::uint32_t, 2> next = whole;
-    for (std::size_t i = 0; i < straddlers; ++i) {
-        const Bounds* box[2] = {&parts[i].lower, &parts[i].upper};
-        for (int side = 0; side < 2; ++side) {
-            if (box[side]->empty()) continue;
-            const std::uint32_t slot = next[side]++;
-            children[side]->slots.shape[slot] = owned.slots.shape[classes.straddlers[i]];
-            children[side]->slots.box[slot] = *box[side];
-            new_events.add(side, slot, *box[side]);
-        }
-    }
-    new_events.sort();
+    fill_slots(owned.slots, classes, parts, whole, {&children[0]->slots, &children[1]->slots}, new_events);
+    distribute_events(node, classes, new_events, children);
 
     branch.split = best;
     branch.counts.inner_nodes = 1;
-    branch.counts.cost = half_area(node.cell) * options.traversal_cost;
+    branch.counts.cost = half_area(node.cell) * input_.options.traversal_cost;
     branch.counts.events = new_events.operations();
-    for (int axis = 0; axis < 3; ++axis) branch.counts.events += 2 * node.events[axis].size();
-    for (int axis = 0; axis < 3; ++axis) {
-#pragma omp task shared(children, classes, node, new_events) firstprivate(axis)
-        errors_.guard([&] {
-            for (int side = 0; side < 2; ++side)
-                children[side]->allocate(axis, 2 * std::size_t{classes.sizes[side]} + 1);
-            const Distributed written = distribute(node.axis(axis), classes.target.data(),
-                                                   new_events.of(0, axis).data(), new_events.of(1, axis).data(),
-                                                   children[0]->storage[axis].get(), children[1]->storage[axis].get());
-            children[0]->node.events[axis] = {children[0]->storage[axis].get(), written.lower};
-            children[1]->node.events[axis] = {children[1]->storage[axis].get(), written.upper};
-        });
-    }
-#pragma omp taskwait
+    for (const auto& events : node.events) branch.counts.events += 2 * events.size();
     owned = {};  // the children have everything
     grow_children(std::move(children), branch);
     return true;
 }
 
-void Builder::grow_children(std::array<std::shared_ptr<OwnedNode>, 2> children, Branch& branch) {
+void Builder::grow_children(Children children, Branch& branch) {
     for (int side = 0; side < 2; ++side) {
         branch.child[side] = std::make_unique<Branch>();
         Branch* const to = branch.child[side].get();
