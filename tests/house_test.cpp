@@ -164,11 +164,25 @@ TEST(House, EverySourceIsBuilt) {
             const std::string name = file.lexically_relative(folder).generic_string();
             // A function there that makes fuzz_NAME of fuzz_NAME.cpp.
             const std::string call =
-                "raywalk_fuzzer(" + (name.starts_with("fuzz_") ? file.stem().string().substr(5) : "-") + ")";
+                "raywalk_fuzzer(" + (name.starts_with("fuzz_") ? file.stem().string().substr(5) : "-");
             listed = list.find(name) != std::string::npos || list.find(call) != std::string::npos;
         }
         EXPECT_TRUE(listed) << name_of(file) << " is in no CMakeLists.txt";
     }
+}
+
+TEST(House, EveryTestThatIsPromisedExists) {
+    std::string tests;
+    for (const fs::path& file : files({"tests"}, {".cpp"})) tests += text_of(file);
+    const std::string promises = text_of(root / "tests/README.md");
+    const std::regex name("`([A-Z][A-Za-z0-9]*)\\.([A-Z][A-Za-z0-9]*)`");
+    std::size_t named = 0;
+    for (std::sregex_iterator match(promises.begin(), promises.end(), name), end; match != end; ++match, ++named)
+        EXPECT_NE(tests.find((*match)[1].str() + ", " + (*match)[2].str()), std::string::npos) << match->str();
+    EXPECT_GT(named, 50u);
+    const std::regex script("`window\\.([a-z_]+)`");
+    for (std::sregex_iterator match(promises.begin(), promises.end(), script), end; match != end; ++match)
+        EXPECT_TRUE(fs::exists(root / "tests/window" / ((*match)[1].str() + ".sh"))) << match->str();
 }
 
 }  // namespace
