@@ -54,6 +54,7 @@ struct Beam {
     float steepest;              // largest slope, in magnitude
     float depth_min, depth_max;  // where a hit would still count
     std::uint64_t active;
+    int tests_left;  // of a triangle against a group; below zero the traversal gives up
 };
 
 // Fills everything of a beam but the ranges of slopes and depths: axis, sign and slopes, as its first active ray goes.
@@ -127,6 +128,15 @@ HWY_INLINE void shorten_beam(Beam& beam) {
     beam.depth_max = (1.0f + slab_slack) / reduce_min(least);
 }
 
+// The slopes' ranges a hair wider, for the roundings of what is computed with them.
+HWY_INLINE void widen_beam(Beam& beam) {
+    const float margin = 1e-6f;
+    beam.u0 -= margin * std::fabs(beam.u0);
+    beam.u1 += margin * std::fabs(beam.u1);
+    beam.v0 -= margin * std::fabs(beam.v0);
+    beam.v1 += margin * std::fabs(beam.v1);
+}
+
 // Ready for traversal: nearest hits and limits from the rays' t_min and t_max, ranges widened.
 HWY_INLINE void start_beam(const BeamRays& rays, float padding, Beam& beam) {
     beam.padding = padding;
@@ -147,11 +157,34 @@ HWY_INLINE void start_beam(const BeamRays& rays, float padding, Beam& beam) {
     shorten_beam(beam);
     beam.steepest =
         std::max(std::max(std::fabs(beam.u0), std::fabs(beam.u1)), std::max(std::fabs(beam.v0), std::fabs(beam.v1)));
-    const float margin = 1e-6f;
-    beam.u0 -= margin * std::fabs(beam.u0);
-    beam.u1 += margin * std::fabs(beam.u1);
-    beam.v0 -= margin * std::fabs(beam.v0);
-    beam.v1 += margin * std::fabs(beam.v1);
+    widen_beam(beam);
+}
+
+// The rays of `part` alone, with what they have hit so far. Axis, sign and steepest slope stay, so that a ray hits the
+// same, to the last bit, in whatever part of the beam it is traced.
+HWY_INLINE Beam part_of(const Beam& beam, std::uint64_t part) {
+    Beam result = beam;
+    for (int g = 0; g < beam_groups; ++g)
+        result.group[g].inverse_depth =
+            select(mask_of_bits(group_bits(part, g)), beam.group[g].inverse_depth, Real(infinity));
+    measure_beam(part, result);
+    widen_beam(result);
+    shorten_beam(result);
+    return result;
+}
+
+// Takes over what the rays of `part` have hit in `traced`, which was a part of the beam.
+HWY_INLINE void take_part(const Beam& traced, std::uint64_t part, Beam& beam) {
+    beam.active = (beam.active & ~part) | (traced.active & part);
+    for (int g = 0; g < beam_groups; ++g) {
+        const BeamGroup& from = traced.group[g];
+        BeamGroup& to = beam.group[g];
+        const Mask taken = mask_of_bits(group_bits(part, g));
+        to.inverse_depth = select(taken, from.inverse_depth, to.inverse_depth);
+        to.id = select(taken, from.id, to.id);
+        for (int i = 0; i < 3; ++i) to.weight[i] = select(taken, from.weight[i], to.weight[i]);
+        to.active = group_bits(beam.active, g);
+    }
 }
 
 }  // namespace HWY_NAMESPACE

@@ -135,6 +135,7 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, Beam& beam) {
         if (group.active == 0) continue;
         const std::uint32_t candidates = kept & bits(touches_group(group, edge));
         if (candidates == 0) continue;
+        beam.tests_left -= std::popcount(candidates);
         hit |= static_cast<std::uint64_t>(hit_group<any_hit>(candidates, triangles, block.id, group)) << (g * lanes);
     }
     finish_hits<any_hit>(hit, beam);

@@ -63,10 +63,10 @@ HWY_INLINE std::uint32_t enter_children(const BvhNode& node, const BeamSlabs& s,
     return bits(keep);
 }
 
-// Any-hit beams end when no ray is left.
+// Any-hit beams end when no ray is left, all when their tests are used up.
 template <bool any_hit>
 HWY_INLINE bool beam_done(const Beam& beam) {
-    return any_hit && beam.active == 0;
+    return (any_hit && beam.active == 0) || beam.tests_left < 0;
 }
 
 template <bool any_hit>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "tracer/kernels/beam_traversal.h"
 #include "tracer/kernels/intersect.h"
@@ -22,6 +23,10 @@ constexpr float widest_beam = 0.08f;
 // Fewer rays than this, or a beam split this often, goes ray by ray.
 constexpr int fewest_rays = 4;
 constexpr int most_splits = 12;
+// Where triangles are smaller than the gaps between rays, a beam tests many that none of its rays hits: after this many
+// tests a ray it is split, down to this many rays.
+constexpr int most_tests_per_ray = 12;
+constexpr int rays_of_dense_beam = 8;
 // Rays whose share along the major axis is below the first leave the beam; those above the second stay together.
 constexpr float least_share = 0.1f, good_share = 0.3f;
 
@@ -90,6 +95,32 @@ void take_hits(const Beam& beam, BeamHits& hits) {
     }
 }
 
+// Traces a beam that is ready, in parts where too many shapes lie in its way.
+template <bool any_hit>
+void trace_beam(const CompiledScene& scene, bool dense, Beam& beam) {
+    const int rays = std::popcount(beam.active);
+    const bool small = rays <= rays_of_dense_beam;
+    beam.tests_left = small ? std::numeric_limits<int>::max() : most_tests_per_ray * rays;
+    if (small || !dense) traverse<any_hit>(scene, beam);
+    if (small || (!dense && beam.tests_left >= 0)) return;
+    if (any_hit && beam.active == 0) return;
+
+    measure_beam(beam.active, beam);
+    const std::uint64_t lower = lower_half(beam), upper = beam.active & ~lower;
+    for (const std::uint64_t part : {lower, upper}) {
+        if (part == 0) continue;
+        Beam traced = part_of(beam, part);
+        // Rays of one direction do not come apart by slope: they are one small beam, whatever their number.
+        if (part == (lower | upper)) {
+            traced.tests_left = std::numeric_limits<int>::max();
+            traverse<any_hit>(scene, traced);
+        } else {
+            trace_beam<any_hit>(scene, true, traced);
+        }
+        take_part(traced, part, beam);
+    }
+}
+
 // Splits the active rays into beams that are narrow and well aligned with an axis, and traces each. Returns which rays
 // met something (any_hit only).
 template <bool any_hit>
@@ -113,7 +144,7 @@ std::uint64_t trace_beams(const CompiledScene& scene, const BeamRays& rays, std:
                trace_beams<any_hit>(scene, rays, active & ~lower, splits + 1, hits);
     }
     start_beam(rays, box_padding_of(scene, rays.origin), beam);
-    traverse<any_hit>(scene, beam);
+    trace_beam<any_hit>(scene, false, beam);
     if constexpr (any_hit) return active & ~beam.active;
     take_hits(beam, *hits);
     return 0;
