@@ -213,7 +213,7 @@ void triangle_growth(const Setting& setting, Findings& findings) {
         {"Memory of the hierarchy, MB",
          "triangles",
          {{"kd-tree", kd_color, memory[0]}, {"BVH", bvh_color, memory[1]}, law("N", memory[0], linear)}});
-    findings.panels.push_back({"Nanoseconds a ray, one thread (a straight line is log N)",
+    findings.panels.push_back({"Nanoseconds a ray, one thread",
                                "triangles",
                                {{"kd-tree, diffuse", kd_color, diffuse[0]},
                                 {"BVH, diffuse", bvh_color, diffuse[1]},
