@@ -94,7 +94,8 @@ int capture(const Options& options, const LoadedScene& loaded) {
     if (!interrupted()) capture.trace(view);
     capture.save(options.output);
     if (options.stats) {
-        nlohmann::json statistics = statistics_of(options, loaded, capture.renderer(), capture.traced_seconds());
+        nlohmann::ordered_json statistics =
+            statistics_of(options, loaded, capture.renderer(), capture.traced_seconds());
         statistics["device"] = capture.device_name();
         write_statistics(*options.stats, statistics);
     }

@@ -15,8 +15,8 @@ namespace {
 constexpr std::uint32_t default_sample_limit = 4096;  // a pixel: no eye sees another one
 
 // Milliseconds below which so many of a hundred lie.
-nlohmann::json percentiles(std::vector<double> seconds) {
-    nlohmann::json result = {{"count", seconds.size()}};
+nlohmann::ordered_json percentiles(std::vector<double> seconds) {
+    nlohmann::ordered_json result = {{"count", seconds.size()}};
     if (seconds.empty()) return result;
     std::ranges::sort(seconds);
     const auto at = [&](double share) {
@@ -30,7 +30,7 @@ nlohmann::json percentiles(std::vector<double> seconds) {
 }
 
 // The properties of a scene's Viewer that open it where the walk ended.
-nlohmann::json viewer_of(const Camera& camera) {
+nlohmann::ordered_json viewer_of(const Camera& camera) {
     const auto text = [](const glm::dvec3& v) {
         char line[96];
         std::snprintf(line, sizeof line, "%.17g %.17g %.17g", v.x, v.y, v.z);
@@ -39,9 +39,10 @@ nlohmann::json viewer_of(const Camera& camera) {
     return {{"center", text(camera.eye)}, {"target", text(camera.eye + camera.direction)}, {"up", text(camera.north)}};
 }
 
-nlohmann::json walk_statistics(const Options& options, const LoadedScene& loaded, const Renderer& renderer,
-                               const RenderThread& render, const WalkRecord& record, const std::string& device) {
-    nlohmann::json statistics = statistics_of(options, loaded, renderer, render.traced_seconds());
+nlohmann::ordered_json walk_statistics(const Options& options, const LoadedScene& loaded, const Renderer& renderer,
+                                       const RenderThread& render, const WalkRecord& record,
+                                       const std::string& device) {
+    nlohmann::ordered_json statistics = statistics_of(options, loaded, renderer, render.traced_seconds());
     statistics["frames"] = {{"moving", percentiles(render.moving_frame_seconds())},
                             {"answer", percentiles(record.answer_seconds)},
                             {"present", percentiles(record.present_seconds)}};
