@@ -4,7 +4,7 @@
 # its benchmark marks; the plot of growth goes beside its pictures. Exit code 1: contenders disagree about what was hit.
 set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
-source "$root/tools/prepare.sh"
+source "$root/.ci/prepare.sh"
 bench_packages=(libembree-dev libtinyobjloader-dev libassimp-dev)
 
 whole=yes

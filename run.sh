@@ -4,7 +4,7 @@
 # Without a display a short walk is captured into pictures instead.
 set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
-source "$root/tools/prepare.sh"
+source "$root/.ci/prepare.sh"
 
 scene=$root/scenes/cornell_box.scene
 if [[ $# -gt 0 && $1 != -* ]]; then

@@ -5,7 +5,7 @@
 # Ends with one line per stage and their count; the exit code is 0 where nothing failed.
 set -uo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
-source "$root/tools/prepare.sh"
+source "$root/.ci/prepare.sh"
 
 full=no
 case "${1:-}" in
