@@ -125,7 +125,7 @@ TEST(House, TextIsCleanAndPromisesNothingForLater) {
         "ME|X"
         "XX)\\b");
     auto texts = sources();
-    const auto more = files({"app", "scenes", "tests", "tools"}, {".txt", ".sh", ".md", ".scene", ".comp", ".glsl"});
+    const auto more = files({"app", "scenes", "tests", ".ci"}, {".txt", ".sh", ".md", ".scene", ".comp", ".glsl"});
     texts.insert(texts.end(), more.begin(), more.end());
     for (const fs::path& file : texts) {
         if (is_meant_to_be_odd(file)) continue;
@@ -149,7 +149,7 @@ TEST(House, NoFileNamesAPlaceOfOneMachine) {
                            "rk/)",
                            std::regex::icase);
     auto texts = sources();
-    const auto more = files({"app", "scenes", "tests", "tools", "tracer"}, {".sh", ".md", ".scene", ".txt"});
+    const auto more = files({"app", "scenes", "tests", ".ci", "tracer"}, {".sh", ".md", ".scene", ".txt"});
     for (const fs::path& file : more)
         if (name_of(file).find("build/") == std::string::npos) texts.push_back(file);
     for (const fs::path& file : texts) EXPECT_FALSE(std::regex_search(text_of(file), place)) << name_of(file);

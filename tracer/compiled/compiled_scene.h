@@ -21,9 +21,9 @@ struct alignas(64) SurfaceRecord {
     float ambient, specular, reflection, transmission;
     std::int32_t shininess;
     Pattern pattern;
-    float color[3];          // pure
-    float scale;             // grid: density; image: 1 / size
-    std::int32_t image;      // image: index into images, else 0
+    float color[3];      // pure
+    float scale;         // grid: density; image: 1 / size
+    std::int32_t image;  // image: index into images, else 0
     std::int32_t padding[5];
 };
 
@@ -81,8 +81,8 @@ struct CompiledScene {
     AlignedVector<SphereRecord> spheres;
     AlignedVector<PlaneRecord> planes;
     AlignedVector<SurfaceRecord> surfaces;
-    AlignedVector<ImageRecord> images;      // never empty
-    AlignedVector<std::uint32_t> texels;    // 0x00BBGGRR, rows from the top, all images; never empty
+    AlignedVector<ImageRecord> images;    // never empty
+    AlignedVector<std::uint32_t> texels;  // 0x00BBGGRR, rows from the top, all images; never empty
     std::vector<LightPoint> light_points;
     std::vector<LightGroup> light_groups;
 };

@@ -205,7 +205,8 @@ HWY_INLINE void store_unaligned(Int a, std::int32_t* p) {
     RAYWALK_EACH(i) hn::StoreU(a.v[i], IntTag(), p + i * register_lanes);
 }
 
-// The lanes of `condition` side by side from p on, which need not be aligned; up to sixteen elements from p are written.
+// The lanes of `condition` side by side from p on, which need not be aligned; up to sixteen elements from p are
+// written.
 HWY_INLINE void compress_store(Real a, Mask condition, float* p) {
     RAYWALK_EACH(i) {
         hn::StoreU(hn::Compress(a.v[i], condition.m[i]), RealTag(), p);
