@@ -11,7 +11,7 @@
 #include "tracer/kernels/beam_traversal.h"
 #include "tracer/kernels/intersect.h"
 #include "tracer/kernels/planes.h"
-#include "tracer/kernels/single_ray.h"
+#include "tracer/kernels/stream_traversal.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {
@@ -31,20 +31,17 @@ constexpr int rays_of_dense_beam = 8;
 constexpr float least_share = 0.1f, good_share = 0.3f;
 
 float box_padding_of(const CompiledScene& scene, const float* origin) {
-    float largest = 0;
-    for (int a = 0; a < 3; ++a)
-        largest = std::max({largest, std::fabs(scene.hierarchy.bounds.lower[a]),
-                            std::fabs(scene.hierarchy.bounds.upper[a]), std::fabs(origin[a])});
-    return largest * box_padding;
+    return box_padding *
+           std::max({scene_reach(scene), std::fabs(origin[0]), std::fabs(origin[1]), std::fabs(origin[2])});
 }
 
 bool hierarchy_is_empty(const CompiledScene& scene) { return scene.triangle_count + scene.sphere_count == 0; }
 
 template <bool any_hit>
-bool traverse(const CompiledScene& scene, const SingleRay& ray, RayHit& hit) {
+std::uint64_t traverse(const CompiledScene& scene, std::uint64_t active, const RayStream& rays, BeamHits& hits) {
     if (const Bvh* bvh = std::get_if<Bvh>(&scene.hierarchy.tree))
-        return traverse_single<any_hit>(scene, *bvh, ray, hit);
-    return traverse_single<any_hit>(scene, *std::get_if<KdTree>(&scene.hierarchy.tree), ray, hit);
+        return traverse_stream<any_hit>(scene, *bvh, active, rays, hits);
+    return traverse_stream<any_hit>(scene, *std::get_if<KdTree>(&scene.hierarchy.tree), active, rays, hits);
 }
 
 template <bool any_hit>
@@ -53,30 +50,21 @@ void traverse(const CompiledScene& scene, Beam& beam) {
     traverse_beam<any_hit>(scene, *std::get_if<KdTree>(&scene.hierarchy.tree), beam);
 }
 
-// Tests one ray against the hierarchy only; `hit` already holds the nearest plane or a miss at t_max.
-template <bool any_hit>
-bool trace_single(const CompiledScene& scene, const Ray& ray, RayHit& hit) {
-    return traverse<any_hit>(scene, make_single_ray(ray, box_padding_of(scene, ray.origin)), hit);
-}
-
-Ray ray_of(const BeamRays& rays, int i) {
-    return {{rays.origin[0], rays.origin[1], rays.origin[2]},
-            {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
-            rays.t_min[i],
-            rays.t_max[i]};
-}
-
-// Rays one by one: t_max of `rays` is the distance of what is known already.
+// Rays of a beam one by one: t_max of `rays` is the distance of what is known already.
 template <bool any_hit>
 std::uint64_t trace_one_by_one(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits* hits) {
-    std::uint64_t found = 0;
-    for (; active != 0; active &= active - 1) {
-        const int i = std::countr_zero(active);
-        RayHit hit = {rays.t_max[i], 0, 0, any_hit ? -1 : hits->id[i]};
-        if (trace_single<any_hit>(scene, ray_of(rays, i), hit)) found |= std::uint64_t{1} << i;
-        if constexpr (!any_hit) hits->t[i] = hit.t, hits->u[i] = hit.u, hits->v[i] = hit.v, hits->id[i] = hit.id;
+    RayStream stream;
+    BeamHits limits;
+    const float reach = scene_reach(scene);
+    for (int g = 0; g < beam_groups; ++g) {
+        if (group_bits(active, g) == 0) continue;
+        const int at = g * lanes;
+        const Vec3 direction = {load(rays.direction[0] + at), load(rays.direction[1] + at),
+                                load(rays.direction[2] + at)};
+        prepare_rays(splat3(rays.origin), direction, load(rays.t_min + at), reach, g, stream);
+        if constexpr (any_hit) store(load(rays.t_max + at), limits.t + at);
     }
-    return found;
+    return traverse<any_hit>(scene, active, stream, any_hit ? limits : *hits);
 }
 
 // Writes what the beam found over what was known.
@@ -150,30 +138,35 @@ std::uint64_t trace_beams(const CompiledScene& scene, const BeamRays& rays, std:
     return 0;
 }
 
+// Makes the rays ready; `hits` becomes the nearest planes, or misses at t_max. Returns the rays that meet a plane.
+std::uint64_t prepare_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active,
+                                RayStream& stream, BeamHits& hits) {
+    const float reach = scene_reach(scene);
+    std::uint64_t met = 0;
+    for (int g = 0; g < beam_groups; ++g) {
+        const int at = g * lanes;
+        const std::uint32_t own = group_bits(active, g);
+        Real t = load(rays.t_max + at);
+        Int id = Int(-1);
+        if (own != 0) {
+            const Vec3 origin = {load(rays.origin[0] + at), load(rays.origin[1] + at), load(rays.origin[2] + at)};
+            const Vec3 direction = {load(rays.direction[0] + at), load(rays.direction[1] + at),
+                                    load(rays.direction[2] + at)};
+            const Real t_min = load(rays.t_min + at);
+            prepare_rays(origin, direction, t_min, reach, g, stream);
+            nearest_planes(scene, origin, direction, t_min, t, id);
+            id = select(mask_of_bits(own), id, Int(-1));
+            met |= static_cast<std::uint64_t>(bits(id > Int(-1))) << at;
+        }
+        store(t, hits.t + at);
+        store(Real(0.0f), hits.u + at);
+        store(Real(0.0f), hits.v + at);
+        store(id, hits.id + at);
+    }
+    return met;
+}
+
 }  // namespace
-
-RayHit intersect_ray(const CompiledScene& scene, const Ray& ray) {
-    RayHit hit = {ray.t_max, 0, 0, -1};
-    if (scene.plane_count > 0) {
-        Real t = Real(ray.t_max);
-        Int id = Int(-1);
-        nearest_planes(scene, ray.origin, splat3(ray.direction), Real(ray.t_min), t, id);
-        hit.t = lane(t, 0), hit.id = lane(id, 0);
-    }
-    if (!hierarchy_is_empty(scene)) trace_single<false>(scene, ray, hit);
-    return hit;
-}
-
-bool occluded_ray(const CompiledScene& scene, const Ray& ray) {
-    RayHit hit = {ray.t_max, 0, 0, -1};
-    if (scene.plane_count > 0) {
-        Real t = Real(ray.t_max);
-        Int id = Int(-1);
-        nearest_planes(scene, ray.origin, splat3(ray.direction), Real(ray.t_min), t, id);
-        if (lane(id, 0) >= 0) return true;
-    }
-    return !hierarchy_is_empty(scene) && trace_single<true>(scene, ray, hit);
-}
 
 void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits& hits) {
     BeamRays shortened = rays;  // t_max: the nearest plane
@@ -182,7 +175,7 @@ void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint6
                                 load(rays.direction[2] + at)};
         Real t = load(rays.t_max + at);
         Int id = Int(-1);
-        nearest_planes(scene, rays.origin, direction, load(rays.t_min + at), t, id);
+        nearest_planes(scene, splat3(rays.origin), direction, load(rays.t_min + at), t, id);
         id = select(mask_of_bits(group_bits(active, at / lanes)), id, Int(-1));
         store(t, shortened.t_max + at);
         store(t, hits.t + at);
@@ -201,13 +194,27 @@ std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, st
                                     load(rays.direction[2] + at)};
             Real t = load(rays.t_max + at);
             Int id = Int(-1);
-            nearest_planes(scene, rays.origin, direction, load(rays.t_min + at), t, id);
+            nearest_planes(scene, splat3(rays.origin), direction, load(rays.t_min + at), t, id);
             blocked |= static_cast<std::uint64_t>(bits(id > Int(-1))) << at;
         }
         blocked &= active;
     }
     if (hierarchy_is_empty(scene)) return blocked;
     return blocked | trace_beams<true>(scene, rays, active & ~blocked, 0, nullptr);
+}
+
+void intersect_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active, BeamHits& hits) {
+    RayStream stream;
+    prepare_scattered(scene, rays, active, stream, hits);
+    if (!hierarchy_is_empty(scene)) traverse<false>(scene, active, stream, hits);
+}
+
+std::uint64_t occluded_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active) {
+    RayStream stream;
+    BeamHits hits;
+    const std::uint64_t blocked = prepare_scattered(scene, rays, active, stream, hits);
+    if (hierarchy_is_empty(scene)) return blocked;
+    return blocked | traverse<true>(scene, active & ~blocked, stream, hits);
 }
 
 }  // namespace HWY_NAMESPACE

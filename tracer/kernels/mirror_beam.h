@@ -43,6 +43,23 @@ inline const float* mirror_normal(const CompiledScene& scene, std::int32_t id) {
                : scene.planes[static_cast<std::size_t>(id - scene.triangle_count - scene.sphere_count)].normal;
 }
 
+// The lanes of `mine` become `value`.
+template <class Lanes, class Number>
+HWY_INLINE void take(Mask mine, Lanes value, Number* to) {
+    store(select(mine, value, load(to)), to);
+}
+
+// The hits of `rays`, and no others, become those in `from`.
+inline void take_hits_of(std::uint64_t rays, const BeamHits& from, BeamHits& to) {
+    for (int at = 0; at < beam_rays; at += lanes) {
+        const Mask mine = mask_of_bits(static_cast<std::uint32_t>(rays >> at) & 0xffffu);
+        take(mine, load(from.t + at), to.t + at);
+        take(mine, load(from.u + at), to.u + at);
+        take(mine, load(from.v + at), to.v + at);
+        take(mine, load(from.id + at), to.id + at);
+    }
+}
+
 // Intersects those of the queue's rays from `first` on that planar mirrors made, mirror by mirror; they get the eye's
 // image as their origin and length 0. Returns which rays that were; scratch.hits has their hits.
 inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float eye[3], RayQueue& queue, int first,
@@ -81,16 +98,12 @@ inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float 
             store(Real(farthest), beam.t_max + at);
         }
         intersect_beam(scene, beam, rays, scratch.beam_hits);
+        take_hits_of(rays, scratch.beam_hits, scratch.hits);
         for (int at = 0; at < beam_rays; at += lanes) {
             const int q = first + at;
             const Mask mine = mask_of_bits(static_cast<std::uint32_t>(rays >> at) & 0xffffu);
-            const auto take = [&](auto* to, auto value) HWY_ATTR { store(select(mine, value, load(to)), to); };
-            take(scratch.hits.t + at, load(scratch.beam_hits.t + at));
-            take(scratch.hits.u + at, load(scratch.beam_hits.u + at));
-            take(scratch.hits.v + at, load(scratch.beam_hits.v + at));
-            take(scratch.hits.id + at, load(scratch.beam_hits.id + at));
-            for (int axis = 0; axis < 3; ++axis) take(queue.origin[axis] + q, Real(beam.origin[axis]));
-            take(queue.length + q, Real(0.0f));
+            for (int axis = 0; axis < 3; ++axis) take(mine, Real(beam.origin[axis]), queue.origin[axis] + q);
+            take(mine, Real(0.0f), queue.length + q);
         }
         done |= rays;
     }

@@ -142,16 +142,16 @@ inline bool lie_together(const BeamRays& shadow, std::uint64_t active) {
 inline std::uint64_t shadowed(const CompiledScene& scene, const BeamRays& shadow, std::uint64_t active,
                               bool of_camera_rays) {
     if (of_camera_rays || lie_together(shadow, active)) return occluded_beam(scene, shadow, active);
-    std::uint64_t result = 0;
-    for (; active != 0; active &= active - 1) {
-        const int i = std::countr_zero(active);
-        const Ray ray = {{shadow.origin[0], shadow.origin[1], shadow.origin[2]},
-                         {shadow.direction[0][i], shadow.direction[1][i], shadow.direction[2][i]},
-                         shadow.t_min[i],
-                         shadow.t_max[i]};
-        if (occluded_ray(scene, ray)) result |= std::uint64_t{1} << i;
+    ScatteredRays rays;
+    for (int at = 0; at < beam_rays; at += lanes) {
+        for (int axis = 0; axis < 3; ++axis) {
+            store(Real(shadow.origin[axis]), rays.origin[axis] + at);
+            store(load(shadow.direction[axis] + at), rays.direction[axis] + at);
+        }
+        store(load(shadow.t_min + at), rays.t_min + at);
+        store(load(shadow.t_max + at), rays.t_max + at);
     }
-    return result;
+    return occluded_scattered(scene, rays, active);
 }
 
 // shade.local = light received directly by the hits of shade.lit, attenuated from light to hit to eye.
