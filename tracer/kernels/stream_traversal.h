@@ -82,24 +82,88 @@ HWY_INLINE void visit_node(const BvhNode& node, std::uint64_t active, const RayS
     }
 }
 
-// Tests the blocks of a leaf, ray by ray; returns the any-hit rays that are done.
+// What the rays of a stream found in one block, before each takes its nearest: in this order no ray's test waits for
+// another's outcome.
+struct BlockHits {
+    alignas(64) float t[beam_rays][lanes], u[beam_rays][lanes], v[beam_rays][lanes];
+    std::uint32_t lanes_hit[beam_rays];
+    int ray[beam_rays];
+    int count = 0;
+};
+
+HWY_INLINE void take_hits(const BlockHits& found, const std::int32_t* ids, std::int32_t first_id, BeamHits& hits) {
+    for (int n = 0; n < found.count; ++n) {
+        const int i = found.ray[n];
+        RayHit hit = hit_of(hits, i);
+        const int l = take_nearest(found.lanes_hit[n], load(found.t[n]), ids, first_id, hit);
+        if (l < 0) continue;
+        hit.u = found.u[n][l], hit.v = found.v[n][l];
+        set_hit(hit, i, hits);
+    }
+}
+
 template <bool any_hit>
-HWY_INLINE std::uint64_t visit_leaf(const CompiledScene& scene, BvhReference leaf, std::uint64_t active,
-                                    const RayStream& rays, BeamHits& hits) {
-    const TriangleBlock* triangles = scene.hierarchy.triangle_blocks.data() + leaf.first();
-    const SphereBlock* spheres = scene.hierarchy.sphere_blocks.data() + leaf.first();
+HWY_INLINE std::uint64_t visit_block(const TriangleBlock& block, std::uint64_t active, const RayStream& rays,
+                                     BeamHits& hits) {
+    BlockHits hit;
     std::uint64_t done = 0;
     for (; active != 0; active &= active - 1) {
         const int i = std::countr_zero(active);
-        RayHit hit = hit_of(hits, i);
-        const bool met = leaf.spheres()
-                             ? visit_spheres<any_hit>(spheres, leaf.blocks(), scene.triangle_count, {rays, i}, hit)
-                             : visit_triangles<any_hit>(triangles, leaf.blocks(), {rays, i}, hit);
-        if constexpr (any_hit)
-            done |= static_cast<std::uint64_t>(met) << i;
-        else
-            set_hit(hit, i, hits);
+        const TriangleLanes found = intersect_triangles(block, {rays, i}, Real(hits.t[i]));
+        const std::uint32_t lanes_hit = bits(found.hit);
+        if constexpr (any_hit) {
+            done |= static_cast<std::uint64_t>(lanes_hit != 0) << i;
+        } else {
+            store(found.t, hit.t[hit.count]);
+            store(found.u, hit.u[hit.count]);
+            store(found.v, hit.v[hit.count]);
+            hit.lanes_hit[hit.count] = lanes_hit;
+            hit.ray[hit.count] = i;
+            hit.count += lanes_hit != 0;
+        }
     }
+    if constexpr (!any_hit) take_hits(hit, block.id, 0, hits);
+    return done;
+}
+
+template <bool any_hit>
+HWY_INLINE std::uint64_t visit_block(const SphereBlock& block, std::int32_t first_id, std::uint64_t active,
+                                     const RayStream& rays, BeamHits& hits) {
+    BlockHits hit;
+    std::uint64_t done = 0;
+    for (; active != 0; active &= active - 1) {
+        const int i = std::countr_zero(active);
+        const SphereLanes found = intersect_spheres(block, {rays, i}, Real(hits.t[i]));
+        const std::uint32_t lanes_hit = bits(found.hit);
+        if constexpr (any_hit) {
+            done |= static_cast<std::uint64_t>(lanes_hit != 0) << i;
+        } else {
+            store(found.t, hit.t[hit.count]);
+            hit.lanes_hit[hit.count] = lanes_hit;
+            hit.ray[hit.count] = i;
+            hit.count += lanes_hit != 0;
+        }
+    }
+    if constexpr (any_hit) return done;
+    for (int n = 0; n < hit.count; ++n) {
+        const int i = hit.ray[n];
+        RayHit nearest = hit_of(hits, i);
+        if (take_nearest(hit.lanes_hit[n], load(hit.t[n]), block.id, first_id, nearest) < 0) continue;
+        nearest.u = nearest.v = 0;
+        set_hit(nearest, i, hits);
+    }
+    return 0;
+}
+
+// Tests the blocks of a leaf; returns the any-hit rays that are done.
+template <bool any_hit>
+HWY_INLINE std::uint64_t visit_leaf(const CompiledScene& scene, BvhReference leaf, std::uint64_t active,
+                                    const RayStream& rays, BeamHits& hits) {
+    std::uint64_t done = 0;
+    for (std::uint32_t i = leaf.first(), end = i + leaf.blocks(); i != end; ++i)
+        done |= leaf.spheres() ? visit_block<any_hit>(scene.hierarchy.sphere_blocks[i], scene.triangle_count,
+                                                      active & ~done, rays, hits)
+                               : visit_block<any_hit>(scene.hierarchy.triangle_blocks[i], active & ~done, rays, hits);
     return done;
 }
 
