@@ -33,12 +33,6 @@ HWY_INLINE void store3(Vec3 a, float (*p)[beam_rays], int at) {
     store(a.y, p[1] + at);
     store(a.z, p[2] + at);
 }
-HWY_INLINE std::uint32_t lanes_of(std::uint64_t rays, int group) {
-    return static_cast<std::uint32_t>(rays >> (group * lanes)) & 0xffffu;
-}
-HWY_INLINE std::uint64_t rays_of(std::uint32_t lanes_set, int group) {
-    return static_cast<std::uint64_t>(lanes_set) << (group * lanes);
-}
 
 // What each hit of `shade.lit` would receive from a light at `light` if it sees it, per unit of the light's radiance:
 // shade.diffuse and shade.specular; and the shadow rays that tell, from the light to the hits. Returns which of the

@@ -7,6 +7,14 @@ namespace raywalk {
 
 inline constexpr int beam_rays = 64;  // 8x8 pixels as four groups of 4x4, film.h order
 
+// Which of the 64 rays: bit i is ray i. Sixteen of them, by group, fill the lanes of a register.
+constexpr std::uint32_t lanes_of(std::uint64_t rays, int group) {
+    return static_cast<std::uint32_t>(rays >> (group * 16)) & 0xffffu;
+}
+constexpr std::uint64_t rays_of(std::uint32_t lanes, int group) {
+    return static_cast<std::uint64_t>(lanes) << (group * 16);
+}
+
 // 64 rays of one origin: direction[axis][ray]. Directions need not be unit: t counts in their length. Only hits with
 // t_min < t < t_max count. A lane that is not active may hold anything, NaN too.
 struct alignas(64) BeamRays {

@@ -35,46 +35,81 @@ HWY_INLINE Mask enter_children(const BvhNode& node, const SingleRay& ray, Real t
     return entry <= exit * Real(1.0f + 2 * slab_slack);
 }
 
-// Moeller and Trumbore, "Fast, minimum storage ray-triangle intersection" (1997), on sixteen triangles.
-struct TriangleLanes {
-    Mask hit;
-    Real t, u, v;
+// Moeller and Trumbore, "Fast, minimum storage ray-triangle intersection" (1997), with all that does not depend on the
+// direction d drawn together: the weights of corners 1 and 2 are u . d / normal . d and v . d / normal . d, the
+// distance is volume / normal . d.
+struct TriangleForms {
+    Vec3 normal, u, v;
+    Real volume;
+    Real spread;  // edge times distance, by their largest coordinates: what the rounding of u and v goes with
 };
-HWY_INLINE TriangleLanes intersect_triangles(const TriangleBlock& block, const SingleRay& ray, Real t_max) {
+HWY_INLINE Real largest_coordinate(Vec3 a) { return max(max(abs(a.x), abs(a.y)), abs(a.z)); }
+HWY_INLINE TriangleForms triangle_forms(const TriangleBlock& block, Vec3 origin) {
     const Vec3 v0 = {load(block.corner[0][0]), load(block.corner[0][1]), load(block.corner[0][2])};
     const Vec3 v1 = {load(block.corner[1][0]), load(block.corner[1][1]), load(block.corner[1][2])};
     const Vec3 v2 = {load(block.corner[2][0]), load(block.corner[2][1]), load(block.corner[2][2])};
-    const Vec3 e1 = v0 - v1, e2 = v2 - v0, normal = cross(e2, e1);
-    const Vec3 direction = ray.direction();
-    const Vec3 c = v0 - ray.origin(), q = cross(c, direction);
-    const Real scale = Real(1.0f) / dot(normal, direction);
+    const Vec3 e1 = v0 - v1, e2 = v2 - v0, c = v0 - origin;
+    TriangleForms f;
+    f.normal = cross(e2, e1);
+    f.u = cross(e2, c);
+    f.v = cross(e1, c);
+    f.volume = dot(f.normal, c);
+    const Real edge = max(largest_coordinate(e1), largest_coordinate(e2));
+    f.spread = edge * (edge + largest_coordinate(c));
+    return f;
+}
+
+// Sixteen triangles and one ray, or one triangle and sixteen rays: either way the same bits.
+struct TriangleLanes {
+    Mask hit;  // nothing said of any limit
+    Real t, u, v;
+};
+HWY_INLINE TriangleLanes meet_triangles(const TriangleForms& f, Vec3 direction, Real growth, Real t_min) {
+    const Real scale = Real(1.0f) / dot(f.normal, direction);
     TriangleLanes r;
-    r.u = dot(q, e2) * scale;
-    r.v = dot(q, e1) * scale;
-    r.t = dot(normal, c) * scale;
-    r.hit = (min(r.u, r.v) >= Real(-edge_slack)) & (r.u + r.v <= Real(1.0f + edge_slack)) & (r.t > ray.t_min()) &
-            (r.t <= t_max);
+    r.u = dot(f.u, direction) * scale;
+    r.v = dot(f.v, direction) * scale;
+    r.t = f.volume * scale;
+    const Real slack = min(f.spread * growth * abs(scale), Real(most_growth));
+    r.hit = (min(r.u, r.v) >= -slack) & (r.u + r.v <= Real(1.0f) + slack) & (r.t > t_min);
     return r;
 }
 
-// By the closest approach of the ray to the centre, so that nothing cancels far away.
+// By the closest approach of the ray to the centre, so that nothing cancels far away. `center`: from the ray's origin.
 struct SphereLanes {
-    Mask hit;
+    Mask hit;  // nothing said of any limit
     Real t;
 };
-HWY_INLINE SphereLanes intersect_spheres(const SphereBlock& block, const SingleRay& ray, Real t_max) {
-    const Vec3 direction = ray.direction();
-    const Vec3 c = Vec3{load(block.center[0]), load(block.center[1]), load(block.center[2])} - ray.origin();
-    const Real radius = load(block.radius), inverse_squared_length = Real(ray.stream.inverse_squared_length[ray.i]);
-    const Real middle = dot(c, direction) * inverse_squared_length;
-    const Vec3 p = c - direction * middle;
+HWY_INLINE SphereLanes meet_spheres(Vec3 center, Real radius, Vec3 direction, Real inverse_squared_length, Real t_min) {
+    const Real middle = dot(center, direction) * inverse_squared_length;
+    const Vec3 p = center - direction * middle;
     const Real discriminant = radius * radius - dot(p, p);
     const Real half = sqrt(max(discriminant, Real(0.0f)) * inverse_squared_length);
     const Real first = middle - half;
     SphereLanes r;
-    r.t = select(first > ray.t_min(), first, middle + half);
-    r.hit = (discriminant >= Real(0.0f)) & (r.t > ray.t_min()) & (r.t <= t_max);
+    r.t = select(first > t_min, first, middle + half);
+    r.hit = (discriminant >= Real(0.0f)) & (r.t > t_min);
     return r;
+}
+
+HWY_INLINE Vec3 sphere_centers(const SphereBlock& block, Vec3 origin) {
+    return Vec3{load(block.center[0]), load(block.center[1]), load(block.center[2])} - origin;
+}
+
+// A ray against all shapes of a block.
+HWY_INLINE TriangleLanes meet_block(const TriangleBlock& block, const SingleRay& ray) {
+    return meet_triangles(triangle_forms(block, ray.origin()), ray.direction(), Real(ray.stream.growth[ray.i]),
+                          ray.t_min());
+}
+HWY_INLINE SphereLanes meet_block(const SphereBlock& block, const SingleRay& ray) {
+    return meet_spheres(sphere_centers(block, ray.origin()), load(block.radius), ray.direction(),
+                        Real(ray.stream.inverse_squared_length[ray.i]), ray.t_min());
+}
+
+// Nearest-hit rays also look at hits as far as the one they have: a lower id wins.
+template <bool any_hit>
+HWY_INLINE Mask within(Real t, Real limit) {
+    return any_hit ? t < limit : t <= limit;
 }
 
 // Takes the nearest of the lanes that hit (seldom more than one), if it is nearer than `hit` or as near with a lower
@@ -99,8 +134,8 @@ HWY_INLINE int take_nearest(std::uint32_t lanes_hit, Real t, const std::int32_t*
 template <bool any_hit>
 HWY_INLINE bool visit_triangles(const TriangleBlock* block, std::uint32_t blocks, const SingleRay& ray, RayHit& hit) {
     for (const TriangleBlock* end = block + blocks; block != end; ++block) {
-        const TriangleLanes found = intersect_triangles(*block, ray, Real(hit.t));
-        const std::uint32_t lanes_hit = bits(found.hit);
+        const TriangleLanes found = meet_block(*block, ray);
+        const std::uint32_t lanes_hit = bits(found.hit & within<any_hit>(found.t, Real(hit.t)));
         if (lanes_hit == 0) continue;
         if constexpr (any_hit) return true;
         const int l = take_nearest(lanes_hit, found.t, block->id, 0, hit);
@@ -113,8 +148,8 @@ template <bool any_hit>
 HWY_INLINE bool visit_spheres(const SphereBlock* block, std::uint32_t blocks, std::int32_t first_id,
                               const SingleRay& ray, RayHit& hit) {
     for (const SphereBlock* end = block + blocks; block != end; ++block) {
-        const SphereLanes found = intersect_spheres(*block, ray, Real(hit.t));
-        const std::uint32_t lanes_hit = bits(found.hit);
+        const SphereLanes found = meet_block(*block, ray);
+        const std::uint32_t lanes_hit = bits(found.hit & within<any_hit>(found.t, Real(hit.t)));
         if (lanes_hit == 0) continue;
         if constexpr (any_hit) return true;
         if (take_nearest(lanes_hit, found.t, block->id, first_id, hit) >= 0) hit.u = hit.v = 0;

@@ -26,6 +26,7 @@ struct alignas(64) RayStream {
     float origin[3][beam_rays], direction[3][beam_rays];
     float t_min[beam_rays];
     float inverse_squared_length[beam_rays];  // 1 / direction . direction
+    float growth[beam_rays];                  // growth_of
     // Slabs: t = bound * reciprocal - near or far offset, boxes grown by the padding.
     float reciprocal[3][beam_rays], near_offset[3][beam_rays], far_offset[3][beam_rays];
     float padding[3][beam_rays];            // in t
@@ -39,6 +40,11 @@ inline float scene_reach(const CompiledScene& scene) {
         largest =
             std::max({largest, std::fabs(scene.hierarchy.bounds.lower[a]), std::fabs(scene.hierarchy.bounds.upper[a])});
     return largest;
+}
+
+// By how much triangles grow for a ray (triangle_growth), in the units of TriangleForms::spread . direction.
+HWY_INLINE Real growth_of(Vec3 direction) {
+    return (abs(direction.x) + abs(direction.y) + abs(direction.z)) * Real(triangle_growth);
 }
 
 // Rays [16 group, 16 group + 16) of the stream. `reach`: scene_reach.
@@ -61,6 +67,7 @@ HWY_INLINE void prepare_rays(Vec3 origin, Vec3 direction, Real t_min, float reac
         store(select(safe > Real(0.0f), lower, upper), stream.near_bound[a] + at);
     }
     store(Real(1.0f) / dot(direction, direction), stream.inverse_squared_length + at);
+    store(growth_of(direction), stream.growth + at);
     store(t_min, stream.t_min + at);
 }
 

@@ -109,8 +109,8 @@ HWY_INLINE std::uint64_t visit_block(const TriangleBlock& block, std::uint64_t a
     std::uint64_t done = 0;
     for (; active != 0; active &= active - 1) {
         const int i = std::countr_zero(active);
-        const TriangleLanes found = intersect_triangles(block, {rays, i}, Real(hits.t[i]));
-        const std::uint32_t lanes_hit = bits(found.hit);
+        const TriangleLanes found = meet_block(block, {rays, i});
+        const std::uint32_t lanes_hit = bits(found.hit & within<any_hit>(found.t, Real(hits.t[i])));
         if constexpr (any_hit) {
             done |= static_cast<std::uint64_t>(lanes_hit != 0) << i;
         } else {
@@ -133,8 +133,8 @@ HWY_INLINE std::uint64_t visit_block(const SphereBlock& block, std::int32_t firs
     std::uint64_t done = 0;
     for (; active != 0; active &= active - 1) {
         const int i = std::countr_zero(active);
-        const SphereLanes found = intersect_spheres(block, {rays, i}, Real(hits.t[i]));
-        const std::uint32_t lanes_hit = bits(found.hit);
+        const SphereLanes found = meet_block(block, {rays, i});
+        const std::uint32_t lanes_hit = bits(found.hit & within<any_hit>(found.t, Real(hits.t[i])));
         if constexpr (any_hit) {
             done |= static_cast<std::uint64_t>(lanes_hit != 0) << i;
         } else {
