@@ -42,14 +42,16 @@ inline const char* read_short_whole(const char* p, std::uint32_t& value) {
     return p + count;
 }
 
+inline constexpr std::uint64_t whole_power_of_ten[] = {1,       10,        100,        1'000,      10'000,
+                                                       100'000, 1'000'000, 10'000'000, 100'000'000};
+// All that double precision holds exactly.
+inline constexpr double power_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                          1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
 // The float nearest to the number at p, [+-]digits[.digits][e[+-]digits], and where it ends. nullptr if there is none,
 // or if it has so many digits, or so large an exponent, or lies so near the middle of two floats that only more
 // precision can tell (fast_float has it).
 inline const char* read_decimal(const char* p, float& value) {
-    constexpr std::uint64_t whole_power[] = {1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
-    // All powers of ten that double precision holds exactly.
-    constexpr double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     const bool negative = *p == '-';
     p += negative || *p == '+';
 
@@ -61,13 +63,12 @@ inline const char* read_decimal(const char* p, float& value) {
     int decimals = 0;
     if (*p == '.') {
         ++p;
-        for (int count = 8; count == 8;) {
+        while (is_digit(*p)) {
             characters = eight_characters(p);
-            count = leading_digits(characters);
-            if (count == 0) break;
+            const int count = leading_digits(characters);
             decimals += count;
-            if (whole + decimals > 19) return nullptr;  // more than 64 bits hold
-            digits = digits * whole_power[count] + number_of_digits(characters, count);
+            if (whole + decimals > 18) return nullptr;  // more than 63 bits hold
+            digits = digits * whole_power_of_ten[count] + number_of_digits(characters, count);
             p += count;
         }
     }
@@ -85,8 +86,8 @@ inline const char* read_decimal(const char* p, float& value) {
     }
     // Between 1e-22 and 1e38, or 0: a normal number in both precisions.
     if (exponent < -22 || exponent > 18) return nullptr;
-    const double scaled =
-        exponent < 0 ? static_cast<double>(digits) / power[-exponent] : static_cast<double>(digits) * power[exponent];
+    const auto read = static_cast<double>(static_cast<std::int64_t>(digits));
+    const double scaled = exponent < 0 ? read / power_of_ten[-exponent] : read * power_of_ten[exponent];
     // Rounded twice (once if digits < 2^53), `scaled` is off by less than two units in its last place. The number
     // itself then lies on the same side of every middle of two floats, so that both round to one float, unless `scaled`
     // is this close to such a middle: a one followed by 28 zeros in the 29 bits that a float lacks.

@@ -55,6 +55,7 @@ class ChunkParser {
     bool parse_coordinates(glm::vec3& v, const char* form);
     bool parse_number(float& value, const char* name, const char* form);
     static const char* read_plain_corner(const char* p, Corner& corner);
+    bool parse_plain_triangle();
     bool parse_corner(Corner& corner);
     bool parse_index(std::uint32_t& index, std::size_t count, const char* list);
     void add_normal(glm::vec3 n);
@@ -257,7 +258,7 @@ inline const char* ChunkParser::read_plain_corner(const char* p, Corner& corner)
         if (*p != '/' && (p = read_short_whole(p, texture)) == nullptr) return nullptr;
         if (*p == '/' && ((p = read_short_whole(p + 1, normal)) == nullptr || normal == 0)) return nullptr;
     }
-    if (position == 0 || texture == 0 || !ends_word(*p)) return nullptr;
+    if (position == 0 || texture == 0) return nullptr;
     corner = {position - 1, normal - 1};
     return p;
 }
@@ -281,8 +282,22 @@ bool ChunkParser::parse_corner(Corner& corner) {
     return false;
 }
 
+// Reads what most lines of most files are: three such corners with a blank before each and nothing behind.
+inline bool ChunkParser::parse_plain_triangle() {
+    Corner corners[3];
+    const char* p = p_ + 1;
+    for (Corner& corner : corners) {
+        if (*p != ' ' || (p = read_plain_corner(p + 1, corner)) == nullptr) return false;
+    }
+    if (*p != '\n') return false;
+    add_face(corners[0], corners[1], corners[2]);
+    p_ = p;
+    return true;
+}
+
 // A polygon, as a fan from its first corner.
 void ChunkParser::parse_face() {
+    if (parse_plain_triangle()) return;
     const char* keyword = p_;
     const char* first_line = line_start_;
     const std::size_t faces_before = out_.faces.size();
@@ -290,7 +305,7 @@ void ChunkParser::parse_face() {
     std::size_t count = 0;
     for (++p_, skip_blanks(); *p_ != '\n'; skip_blanks()) {
         Corner corner{};
-        if (const char* after = read_plain_corner(p_, corner); after != nullptr) {
+        if (const char* after = read_plain_corner(p_, corner); after != nullptr && ends_word(*after)) {
             p_ = after;
         } else if (!parse_corner(corner)) {
             out_.faces.resize(faces_before);
