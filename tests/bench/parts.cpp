@@ -58,8 +58,8 @@ Findings measure_ray_rates(const Setting& setting) {
             if (!row.agreement[a].good())
                 findings.problems.push_back(row.workload + ", " + std::string(traits_of(row.kind).name) + ", " +
                                             std::string(name_of(accelerators[a])) + ": " +
-                                            std::to_string(row.agreement[a].different) + " of " +
-                                            std::to_string(row.agreement[a].rays) + " hits differ from Embree's");
+                                            std::to_string(row.agreement[a].wrong) + " of " +
+                                            std::to_string(row.agreement[a].rays) + " hits are wrong");
     return findings;
 }
 
