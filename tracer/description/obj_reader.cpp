@@ -13,7 +13,6 @@
 
 #include "tracer/description/obj_chunk.h"
 #include "tracer/ground/file_bytes.h"
-#include "tracer/ground/large_pages.h"
 
 namespace raywalk {
 
@@ -30,8 +29,8 @@ struct Base {
 // A piece of the text, and what is kept of it when its lists are in the mesh.
 struct Piece {
     std::string_view text;
-    Base base;
-    std::vector<ObjRemark> errors, unknown_words;
+    Base base = {};
+    std::vector<ObjRemark> errors = {}, unknown_words = {};
     // One more than the largest indices of its corners, for a test when all vertices and normals are counted.
     std::uint64_t positions_named = 0, normals_named = 0;
 };
@@ -81,7 +80,7 @@ void make_room(std::vector<T>& list, std::size_t more, double pieces_left) {
     constexpr double most_bytes = 1e9;
     if (list.capacity() - list.size() >= more) return;
     const double expected = std::min(1.05 * pieces_left * static_cast<double>(more), most_bytes / sizeof(T));
-    reserve_large(list, std::max(list.size() + more + static_cast<std::size_t>(expected), 2 * list.size()));
+    list.reserve(std::max(list.size() + more + static_cast<std::size_t>(expected), 2 * list.size()));
 }
 
 class Assembly {
