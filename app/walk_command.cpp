@@ -44,6 +44,7 @@ nlohmann::ordered_json walk_statistics(const Options& options, const LoadedScene
                                        const std::string& device) {
     nlohmann::ordered_json statistics = statistics_of(options, loaded, renderer, render.traced_seconds());
     statistics["frames"] = {{"moving", percentiles(render.moving_frame_seconds())},
+                            {"interval", percentiles(record.frame_intervals)},
                             {"answer", percentiles(record.answer_seconds)},
                             {"present", percentiles(record.present_seconds)}};
     statistics["viewer"] = viewer_of(record.camera);

@@ -144,9 +144,7 @@ void compile_mesh(const MeshSpan& span, std::int32_t surface, CompiledScene& com
         record.surface = surface;
     }
     if (!span.mesh->smooth) return;
-    const std::vector<VertexNormals> normals = corner_normals(*span.triangles);
-    std::copy(normals.begin(), normals.end(),
-              compiled.vertex_normals.begin() + static_cast<std::ptrdiff_t>(span.first));
+    corner_normals(*span.triangles, {compiled.vertex_normals.data() + span.first, faces.size()});
 }
 
 // Smooth meshes, flat meshes, faces: in this order, so that the smooth triangles are the first.

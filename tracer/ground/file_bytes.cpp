@@ -1,7 +1,6 @@
 #include "tracer/ground/file_bytes.h"
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,9 +8,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <new>
 #include <system_error>
-#include <utility>
 
 namespace raywalk {
 
@@ -60,21 +57,8 @@ long read_piece(int fd, char* into, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-FileBytes::FileBytes(std::size_t size) : size_(size), mapped_(size + padding) {
-    void* memory = mmap(nullptr, mapped_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    data_ = static_cast<char*>(memory);
-    madvise(memory, mapped_, MADV_HUGEPAGE);  // fewer page faults; a refusal does not matter
-    std::memset(data_ + size, '\n', padding);
-}
-
-FileBytes::FileBytes(FileBytes&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)),
-      size_(std::exchange(other.size_, 0)),
-      mapped_(std::exchange(other.mapped_, 0)) {}
-
-FileBytes::~FileBytes() {
-    if (data_) munmap(data_, mapped_);
+FileBytes::FileBytes(std::size_t size) : data_(new char[size + padding]), size_(size) {
+    std::memset(data_.get() + size, '\n', padding);
 }
 
 FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {

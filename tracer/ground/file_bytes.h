@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -17,16 +18,13 @@ class FileBytes {
     static constexpr std::size_t padding = 64;
 
     explicit FileBytes(std::size_t size);
-    FileBytes(FileBytes&& other) noexcept;
-    FileBytes& operator=(FileBytes&&) = delete;
-    ~FileBytes();
 
-    [[nodiscard]] std::string_view text() const { return {data_, size_}; }
-    [[nodiscard]] char* data() { return data_; }
+    [[nodiscard]] std::string_view text() const { return {data_.get(), size_}; }
+    [[nodiscard]] char* data() { return data_.get(); }
 
   private:
-    char* data_ = nullptr;
-    std::size_t size_ = 0, mapped_ = 0;
+    std::unique_ptr<char[]> data_;
+    std::size_t size_;
 };
 
 // Why a file could not be read, as the end of a sentence: "is a folder", "cannot be opened: Permission denied". The
