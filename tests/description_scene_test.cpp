@@ -257,12 +257,14 @@ void expect_same(const Scene& a, const Scene& b, const fs::path& folder) {
 TEST(SceneTest, APrintedSceneIsParsedBack) {
     const TestFolder folder;
     folder.write("objs/a file.bin", "");
+    Limits limits;
+    limits.pixels = std::uint64_t{largest_picture} * largest_picture;
     for (unsigned seed = 0; seed < 500; ++seed) {
         RandomScene random(seed);
         const Scene scene = random.scene();
         const std::string text = random.print(scene);
         try {
-            expect_same(scene, parse(text, folder.path() / "x.scene"), folder.path());
+            expect_same(scene, parse(text, folder.path() / "x.scene", limits), folder.path());
         } catch (const InputError& error) {
             FAIL() << seed << ": " << error.what() << "\n" << text;
         }
@@ -392,6 +394,28 @@ TEST(SceneTest, WhatIsNoRegularFileIsRefusedWithoutBeingOpened) {
     EXPECT_TRUE(contains(said_of(mesh_of("/dev/zero"), scene, limits), "is a device"));
 }
 
+TEST(SceneTest, AFileNamedInSeveralWaysIsOneFile) {
+    const TestFolder folder;
+    folder.write("objs/b.obj", "");
+    fs::create_directories(folder.path() / "scenes");
+    fs::create_symlink("../objs/b.obj", folder.path() / "scenes/link.obj");
+    fs::create_hard_link(folder.path() / "objs/b.obj", folder.path() / "scenes/hard.obj");
+    std::string text = std::string(viewer) + std::string(light);
+    for (const std::string name :
+         {"../objs/b.obj", "../objs/./b.obj", "../scenes/../objs/b.obj", "link.obj", "hard.obj"})
+        text += "Mesh\ntexture PureTexture PLASTIC RED\nfile " + name + "\ncenter 0 0 0\nradius 1\n";
+    const Scene scene = parse(text, folder.path() / "scenes/x.scene");
+    ASSERT_EQ(scene.meshes.size(), 5u);
+    for (const Mesh& mesh : scene.meshes) EXPECT_EQ(mesh.file, scene.meshes[0].file);
+}
+
+TEST(SceneTest, ANameLongerThanAnyIsRefusedAtOnce) {
+    std::string name(32u << 20, '/');
+    for (std::size_t i = 0; i + 2 < name.size(); i += 3) name[i] = name[i + 1] = '.';
+    const std::string text = said_of(mesh_of(name));
+    EXPECT_TRUE(contains(text, "is too long for the name of a file")) << text.substr(0, 500);
+}
+
 std::string read_said(const fs::path& file, const Limits& limits = {}) {
     std::vector<Diagnostic> warnings;
     try {
@@ -436,6 +460,14 @@ TEST(SceneTest, BudgetsCountProductsAndSums) {
     EXPECT_TRUE(contains(said_of(std::string(viewer) + "dop 0 1 257\nanti 256\n" + rest), "--max-samples"));
     EXPECT_TRUE(contains(said_of(std::string(viewer) + "dop 0 1 1000000000\nanti 1000000000\n" + rest), "too many"));
     Limits limits;
+    const auto sized = [&](const char* geo) {
+        std::string text(viewer);
+        return text.replace(text.find("geo 64 48"), 9, geo) + rest;
+    };
+    EXPECT_EQ(said_of(sized("geo 4096 4096")), "read");
+    EXPECT_TRUE(contains(said_of(sized("geo 4097 4096")), "--max-pixels"));
+    limits.pixels = 16384ull * 16384;
+    EXPECT_EQ(said_of(sized("geo 16384 16384"), "x.scene", limits), "read");
     limits.light_points = 30;
     const auto lights = [](const char* area) {
         return std::string(viewer) + std::string(sphere) + std::string(light) + "area 5 1\n" + std::string(light) +
@@ -444,6 +476,15 @@ TEST(SceneTest, BudgetsCountProductsAndSums) {
     EXPECT_EQ(said_of(lights("area 2 1\n"), "x.scene", limits), "read");
     EXPECT_TRUE(contains(said_of(lights("area 3 1\n"), "x.scene", limits), "--max-light-points"));
     EXPECT_EQ(said_of(lights(""), "x.scene", limits), "read");
+}
+
+TEST(SceneTest, ATextWithHolesIsRefusedUnread) {
+    const TestFolder folder;
+    const fs::path file = folder.write("x.scene", viewer);
+    fs::resize_file(file, 60u << 20);
+    EXPECT_EQ(read_said(file), file.string() +
+                                   ": error: has holes, so it is no text\n  expected a scene file, such as "
+                                   "scenes/cornell_box.scene");
 }
 
 // Megabytes that this process has held at most so far.
