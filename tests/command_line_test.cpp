@@ -400,6 +400,76 @@ TEST_F(CommandLine, AFullDiskEndsWithOneAndKeepsNothing) {
     EXPECT_THAT(outcome.errors, HasSubstr("cannot write 'full.png': No space left on device"));
 }
 
+TEST_F(CommandLine, AFileThatMayNotGrowEndsWithOneAndKeepsTheOldOne) {
+    const std::string old = picture({}, "picture.pfm");
+    Process limited = process({"room.scene", "-render", "picture.pfm", "--size", "300x300"});
+    limited.file_size_limit = 65'536;
+    const Outcome outcome = run(limited);
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.signal;
+    EXPECT_THAT(outcome.errors, HasSubstr("cannot write 'picture.pfm': File too large"));
+    EXPECT_EQ(read_file(path("picture.pfm")), old);
+    EXPECT_EQ(files(), 2u);
+}
+
+TEST_F(CommandLine, AnOutputNeverDestroysWhatTheSceneIsMadeOf) {
+    write_file(path("t.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write_image(path("floor0.png"), 2, 2, std::vector<std::uint8_t>(12, 128));
+    fs::create_symlink("floor0.png", path("link.png"));
+    write_file(path("room.scene"), std::string(small_scene) +
+                                       "Mesh\ntexture PureTexture PLASTIC RED\nfile t.obj\ncenter 0 0 -9\nradius 1\n"
+                                       "Plane\ntexture ImageTexture FLOOR floor0.png\nnormal 0 1 0\noffset -2\n");
+    const auto contents = [&] {
+        return read_file(path("room.scene")) + read_file(path("t.obj")) + read_file(path("floor0.png"));
+    };
+    const std::string before = contents();
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"-render", "floor0.png"},
+          {"-render", "link.png"},
+          {"-render", "../" + folder_.path().filename().string() + "/floor0.png"},
+          {"-render", "a.png", "--stats", "room.scene"},
+          {"-render", "a.png", "--stats", "t.obj"},
+          {"-render", "a.png", "--stats", "a.png"}}) {
+        std::vector<std::string> all = {"room.scene"};
+        all.insert(all.end(), words.begin(), words.end());
+        const Outcome outcome = raywalk(all);
+        EXPECT_EQ(outcome.exit_code, 2) << outcome.errors;
+        EXPECT_THAT(outcome.errors, HasSubstr("choose another"));
+        EXPECT_EQ(contents(), before);
+    }
+}
+
+TEST_F(CommandLine, NoNameSteersTheTerminal) {
+    const std::string name = "a\x1b[2J\xE2\x80\xAE\n.png";
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"room.scene", "-render", name},
+                                                  {"room.scene", "-render", name + "/a.png"},
+                                                  {name, "-render", "a.png"},
+                                                  {"room.scene", "--check", "--" + name},
+                                                  {"room.scene", "--check", "--keys", name}}) {
+        const Outcome outcome = raywalk(words);
+        EXPECT_THAT(outcome.errors, HasSubstr("a?[2J??.png"));
+        for (const char c : outcome.output + outcome.errors) EXPECT_TRUE(c == '\n' || (c >= 0x20 && c < 0x7F));
+    }
+}
+
+TEST_F(CommandLine, WhatIsNoFaultOfAnImageEndsWithOne) {
+    write_image(path("floor.png"), 2, 2, std::vector<std::uint8_t>(12, 128));
+    write_file(path("room.scene"),
+               std::string(small_scene) + "Plane\ntexture ImageTexture FLOOR floor.png\nnormal 0 1 0\noffset -2\n");
+    Process limited = process({"room.scene", "--check"});
+    limited.open_files_limit = 4;
+    const Outcome outcome = run(limited);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.errors, HasSubstr("Too many open files"));
+}
+
+TEST_F(CommandLine, AnAbsurdNumberOfThreadsOfTheEnvironmentIsNone) {
+    const std::string once = picture({}, "a.pfm");
+    Process absurd = process({"room.scene", "-render", "a.pfm", "--quiet"});
+    absurd.environment = {"OMP_NUM_THREADS=1000000"};
+    EXPECT_EQ(run(absurd).exit_code, 0);
+    EXPECT_EQ(read_file(path("a.pfm")), once);
+}
+
 TEST_F(CommandLine, TooLittleMemoryEndsWithOneAndAMessage) {
 #if defined(__SANITIZE_ADDRESS__)
     constexpr const char* size = "64x64";  // the sanitizer's own memory is past every limit: only that it still runs
