@@ -60,7 +60,6 @@ Ends open_terminal(int columns) {
     };
     set_limit(RLIMIT_AS, process.memory_limit);
     set_limit(RLIMIT_FSIZE, process.file_size_limit);
-    set_limit(RLIMIT_NOFILE, process.open_files_limit);
     if (chdir(process.folder.c_str()) != 0) _exit(126);
     std::vector<char*> words;
     for (const std::string& word : process.words) words.push_back(const_cast<char*>(word.c_str()));
