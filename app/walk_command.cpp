@@ -54,7 +54,7 @@ nlohmann::ordered_json walk_statistics(const Options& options, const LoadedScene
 
 int walk(const Options& options, const LoadedScene& loaded) {
     const GracefulInterrupts graceful;
-    const std::string name = options.scene.filename().string();
+    const std::string name = printable(options.scene.filename().string());
     Window window(picture_size(options, loaded.scene), "Raywalk - " + name);
     Presenter presenter(window.handle());
     if (options.verbosity == Verbosity::verbose) print_note("Vulkan device: " + presenter.device_name());

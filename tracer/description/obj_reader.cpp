@@ -308,7 +308,7 @@ TriangleMesh parse_obj(std::string_view text, const std::filesystem::path& file,
 TriangleMesh read_obj(const std::filesystem::path& file, const Limits& limits, std::vector<Diagnostic>& warnings,
                       const SourceLocation& where) {
     try {
-        const FileBytes bytes = read_file_bytes(file, limits.mesh_bytes);
+        const FileBytes bytes = read_text_bytes(file, limits.mesh_bytes);
         return Assembly(bytes.text(), file, limits).run(warnings);
     } catch (const FileProblem& problem) {
         const SourceLocation place = where.file.empty() ? SourceLocation{file.string()} : where;

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "tracer/ground/error.h"
+
 namespace raywalk {
 
 namespace {
@@ -55,21 +57,32 @@ long read_piece(int fd, char* into, std::size_t begin, std::size_t end) {
     return static_cast<long>(done - begin);
 }
 
+// True if a part of a large file was never written. Such a hole reads as bytes of zero, which no text has.
+bool has_hole(int fd, std::uint64_t size) {
+    constexpr std::uint64_t worth_a_look = 1 << 20;
+    return size >= worth_a_look && static_cast<std::uint64_t>(lseek(fd, 0, SEEK_HOLE)) < size;
+}
+
 }  // namespace
 
 FileBytes::FileBytes(std::size_t size) : data_(new char[size + padding]), size_(size) {
     std::memset(data_.get() + size, '\n', padding);
 }
 
-FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+namespace {
+
+FileBytes read_bytes(const std::filesystem::path& file, std::uint64_t most_bytes, bool text) {
     // Non-blocking: opening a pipe must not wait for a writer.
     const Descriptor fd(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (fd.get() < 0 && (errno == EMFILE || errno == ENFILE || errno == ENOMEM))  // not the file's fault
+        throw WorkError("cannot open " + quoted_name(file.string()) + ": " + reason(errno));
     if (fd.get() < 0) throw FileProblem("cannot be opened: " + reason(errno));
     struct stat before {};
     if (fstat(fd.get(), &before) != 0) throw FileProblem("cannot be examined: " + reason(errno));
     if (std::string kind = kind_problem(before.st_mode); !kind.empty()) throw FileProblem(kind);
     const auto size = static_cast<std::uint64_t>(before.st_size);
     if (size > most_bytes) throw FileProblem("has " + std::to_string(size) + " bytes", true);
+    if (text && has_hole(fd.get(), size)) throw FileProblem("has holes, so it is no text");
 
     FileBytes bytes(size);
     std::atomic<long> error{0};
@@ -97,6 +110,16 @@ FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_
     if (changed || longer || after.st_size != before.st_size || !same_time(after.st_mtim, before.st_mtim))
         throw FileProblem("changed while it was read; try again");
     return bytes;
+}
+
+}  // namespace
+
+FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+    return read_bytes(file, most_bytes, false);
+}
+
+FileBytes read_text_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+    return read_bytes(file, most_bytes, true);
 }
 
 std::string file_problem(const std::filesystem::path& file) {

@@ -39,6 +39,9 @@ class FileProblem : public std::runtime_error {
 // Reads a regular file of at most `most_bytes`. Throws FileProblem. Large files are read by several threads.
 FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
 
+// As above, a file of text: one with holes, which takes no space on disk but would take memory, is refused unread.
+FileBytes read_text_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
+
 // What would keep `file` from being read (it is missing, a folder, a device, not readable); empty when nothing would.
 std::string file_problem(const std::filesystem::path& file);
 

@@ -22,7 +22,10 @@ HWY_BEFORE_NAMESPACE();
 namespace raywalk {
 namespace HWY_NAMESPACE {
 
-inline constexpr float farthest = __builtin_inff();  // t_max of rays that end nowhere
+// t_max of rays that end nowhere. Finite: a plane seen at a grazing angle may be hit at any distance, and the products
+// of a ray that starts there (its origin times the largest reciprocal of a direction, 1e18) have to be finite, or the
+// slab test would meet infinity minus infinity.
+inline constexpr float farthest = 1e18f;
 
 // Fewer rays of one mirror go alone.
 inline constexpr int fewest_mirrored = 8;
