@@ -95,7 +95,8 @@ glm::vec3 origin_in(const ShapeSet& set, int i, Random& random) {
         const auto& p = set.triangles[set.triangles.size() / 2].p;  // on a surface
         return (p[0] + p[1] + p[2]) / 3.0f;
     }
-    if (i == 2 && !set.triangles.empty()) return set.triangles.front().p[1];  // at a corner
+    if (i == 2 && !set.triangles.empty()) return set.triangles.front().p[1];                          // at a corner
+    if (i == 3 && !set.spheres.empty()) return set.spheres[0].center + 0.5f * set.spheres[0].radius;  // inside
     return middle + random.point(i % 2 == 0 ? 5.0f : 25.0f);
 }
 

@@ -1,49 +1,6 @@
 # Deliberate faults, sourced by run.sh: fault DESCRIPTION FILE OLD NEW EXECUTABLE TESTS. OLD stands in FILE just once.
 # Neighbours in this list share files, which saves building.
 
-# Kernels: what rays hit.
-fault "triangles reach beyond their third edge" tracer/kernels/single_ray.h \
-    'r.u + r.v <= Real(1.0f + edge_slack)' 'r.u + r.v <= Real(1.1f)' \
-    traversal_tests '*FindsTheHitsThatALoop*'
-fault "no ray starts inside a sphere" tracer/kernels/single_ray.h \
-    'select(first > Real(ray.t_min), first, middle + half)' 'first' \
-    traversal_tests '*FindsTheHitsThatALoop*'
-fault "of equal hits the last counts" tracer/kernels/single_ray.h \
-    'distance[l] == hit.t && id >= hit.id' 'distance[l] == hit.t && id == hit.id' \
-    traversal_tests 'TraversalBits.*'
-fault "a group's rays do not widen its beam" tracer/kernels/beam.h \
-    'beam.u1 = std::max(beam.u1, group.u1)' 'beam.u1 = std::max(beam.u1, group.u0)' \
-    traversal_tests '*FindsTheHitsThatALoop*'
-fault "beams end at the first hit of any ray" tracer/kernels/beam.h \
-    'least = min(least, beam.group[g].inverse_depth)' 'least = max(least, beam.group[g].inverse_depth)' \
-    traversal_tests '*FindsTheHitsThatALoop*'
-
-# Kernels: how it looks.
-fault "light fades too fast" tracer/kernels/phong.h \
-    'attenuation = 0.02f' 'attenuation = 0.0201f' \
-    shading_tests 'Shading.LightFadesByTheLengthOfItsWholePath'
-fault "the highlight lies elsewhere" tracer/kernels/phong.h \
-    'mul_sub(cosine * Real(2.0f)' 'mul_sub(cosine * Real(1.9f)' \
-    shading_tests 'Shading.PhongAtAKnownAngle'
-fault "mirrors are bent" tracer/kernels/whitted.h \
-    'Real(-2.0f) * dot' 'Real(-1.99f) * dot' \
-    shading_tests 'Shading.MirrorShowsTheVirtualImage'
-fault "glass bends the wrong way" tracer/kernels/whitted.h \
-    'eta = medium / index' 'eta = index / medium' \
-    shading_tests 'Shading.GlassSphereBendsRaysBySnellsLaw'
-fault "total reflection lets light out" tracer/kernels/whitted.h \
-    'active & s.sphere & (squared < Real(0.0f))' 'active & s.sphere & (squared < Real(-9.0f))' \
-    shading_tests 'Shading.TotalReflectionReflects'
-fault "black and white change places" tracer/kernels/texture.h \
-    'select(floor(half) < half, Real(1.0f), Real(0.0f))' 'select(floor(half) < half, Real(0.0f), Real(1.0f))' \
-    shading_tests 'Texturing.GridOnASphereFollowsLongitudeAndLatitude'
-fault "rows of an image are columns" tracer/kernels/texture.h \
-    'cell(a - floor(a), rows) * columns' 'cell(a - floor(a), columns) * rows' \
-    shading_tests 'Texturing.ImageShowsTheTexelUnderEveryPoint'
-fault "vertex normals at the wrong corners" tracer/kernels/surface.h \
-    'mul_add(corner(2), hit.v, mul_add(corner(1), hit.u,' 'mul_add(corner(1), hit.v, mul_add(corner(2), hit.u,' \
-    shading_tests 'SmoothTriangle.*'
-
 # The trees and their builders.
 fault "the sweep forgets who began" tracer/compiled/kd_sweep.cpp \
     'below += start;' 'below += 1;' \
@@ -101,3 +58,46 @@ fault "a step of a turned view goes the old way" tracer/rendering/walk.cpp \
 fault "counts in a walk script are passed over" app/walk_script.cpp \
     'counted ? count : 1' '1' \
     app_tests 'WalkScript.*'
+
+# Kernels: what rays hit.
+fault "triangles reach beyond their third edge" tracer/kernels/single_ray.h \
+    'r.u + r.v <= Real(1.0f + edge_slack)' 'r.u + r.v <= Real(1.1f)' \
+    traversal_tests '*FindsTheHitsThatALoop*'
+fault "no ray starts inside a sphere" tracer/kernels/single_ray.h \
+    'select(first > Real(ray.t_min), first, middle + half)' 'first' \
+    traversal_tests '*FindsTheHitsThatALoop*'
+fault "of equal hits the last counts" tracer/kernels/single_ray.h \
+    'distance[l] == hit.t && id >= hit.id' 'distance[l] == hit.t && id == hit.id' \
+    traversal_tests 'TraversalBits.*'
+fault "a group's rays do not widen its beam" tracer/kernels/beam.h \
+    'beam.u1 = std::max(beam.u1, group.u1)' 'beam.u1 = std::max(beam.u1, group.u0)' \
+    traversal_tests '*FindsTheHitsThatALoop*'
+fault "beams end at the first hit of any ray" tracer/kernels/beam.h \
+    'least = min(least, beam.group[g].inverse_depth)' 'least = max(least, beam.group[g].inverse_depth)' \
+    traversal_tests '*FindsTheHitsThatALoop*'
+
+# Kernels: how it looks.
+fault "light fades too fast" tracer/kernels/phong.h \
+    'attenuation = 0.02f' 'attenuation = 0.0201f' \
+    shading_tests 'Shading.LightFadesByTheLengthOfItsWholePath'
+fault "the highlight lies elsewhere" tracer/kernels/phong.h \
+    'mul_sub(cosine * Real(2.0f)' 'mul_sub(cosine * Real(1.9f)' \
+    shading_tests 'Shading.PhongAtAKnownAngle'
+fault "mirrors are bent" tracer/kernels/whitted.h \
+    'Real(-2.0f) * dot' 'Real(-1.99f) * dot' \
+    shading_tests 'Shading.MirrorShowsTheVirtualImage'
+fault "glass bends the wrong way" tracer/kernels/whitted.h \
+    'eta = medium / index' 'eta = index / medium' \
+    shading_tests 'Shading.GlassSphereBendsRaysBySnellsLaw'
+fault "total reflection lets light out" tracer/kernels/whitted.h \
+    'active & s.sphere & (squared < Real(0.0f))' 'active & s.sphere & (squared < Real(-9.0f))' \
+    shading_tests 'Shading.TotalReflectionReflects'
+fault "black and white change places" tracer/kernels/texture.h \
+    'select(floor(half) < half, Real(1.0f), Real(0.0f))' 'select(floor(half) < half, Real(0.0f), Real(1.0f))' \
+    shading_tests 'Texturing.GridOnASphereFollowsLongitudeAndLatitude'
+fault "rows of an image are columns" tracer/kernels/texture.h \
+    'cell(a - floor(a), rows) * columns' 'cell(a - floor(a), columns) * rows' \
+    shading_tests 'Texturing.ImageShowsTheTexelUnderEveryPoint'
+fault "vertex normals at the wrong corners" tracer/kernels/surface.h \
+    'mul_add(corner(2), hit.v, mul_add(corner(1), hit.u,' 'mul_add(corner(1), hit.v, mul_add(corner(2), hit.u,' \
+    shading_tests 'SmoothTriangle.*'
