@@ -3,9 +3,9 @@
 
 build_packages=(g++ cmake ninja-build pkg-config libvulkan-dev libglfw3-dev libglm-dev glslang-tools libopenimageio-dev
     libpng-dev libjpeg-dev libhwy-dev libfast-float-dev nlohmann-json3-dev)
-test_packages=(libgtest-dev libgmock-dev libx11-dev vulkan-validationlayers xvfb xauth xdotool imagemagick
+test_packages=(libgtest-dev libgmock-dev libx11-dev libxtst-dev vulkan-validationlayers xvfb xauth xdotool imagemagick
     openimageio-tools)
-full_test_packages=(clang libomp-dev clang-format clang-tidy)
+full_test_packages=(clang libomp-dev clang-format clang-tidy gcovr)
 
 say() { printf '%s\n' "$*" >&2; }
 

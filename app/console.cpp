@@ -115,8 +115,7 @@ std::string duration_text(double seconds) {
     else if (seconds < 59.95)
         std::snprintf(text, sizeof text, "%.1f s", seconds);
     else if (seconds < 3599.5)
-        std::snprintf(text, sizeof text, "%d min %d s", static_cast<int>(seconds + 0.5) / 60,
-                      static_cast<int>(seconds + 0.5) % 60);
+        std::snprintf(text, sizeof text, "%ld min %ld s", std::lround(seconds) / 60, std::lround(seconds) % 60);
     else
         std::snprintf(text, sizeof text, "%.0f h %d min", std::floor((seconds + 30) / 3600),
                       static_cast<int>(std::fmod(seconds + 30, 3600)) / 60);

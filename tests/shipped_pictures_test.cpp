@@ -39,6 +39,6 @@ TEST_P(ShippedPicture, IsRenderedWithoutAWarning) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, ShippedPicture, testing::ValuesIn(shipped_scenes()),
-                         [](const auto& info) { return info.param.stem().string(); });
+                         [](const auto& scene) { return scene.param.stem().string(); });
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST_P(ShippedScene, ReadsWithoutAWarningAndFindsItsFiles) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, ShippedScene, testing::ValuesIn(shipped_scenes()),
-                         [](const auto& info) { return info.param.stem().string(); });
+                         [](const auto& scene) { return scene.param.stem().string(); });
 
 // Six times the signed volume between the surface and the origin, of a closed mesh.
 double volume(const generate::Mesh& mesh) {
@@ -138,13 +138,13 @@ TEST_P(GeneratedTexture, HasNoSeamWhereItRepeats) {
 TEST_P(GeneratedTexture, IsAPictureAndNoPlainColour) {
     const generate::Picture picture = generate::texture(GetParam(), 128);
     double sum = 0, squares = 0;
-    for (const std::uint8_t value : picture.rgb) sum += value, squares += double{value} * value;
+    for (const std::uint8_t value : picture.rgb) sum += value, squares += value * value;
     const double mean = sum / picture.rgb.size();
     EXPECT_GT(mean, 40);
     EXPECT_GT(std::sqrt(squares / picture.rgb.size() - mean * mean), 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, GeneratedTexture, testing::Values("brick", "stone", "wood", "tiles", "marble"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& texture) { return std::string(texture.param); });
 
 }  // namespace

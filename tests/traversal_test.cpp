@@ -28,6 +28,18 @@ double distance_to_longest_edge(const TriangleCorners& triangle, glm::dvec3 poin
     return glm::length(point - (a + s * (b - a)));
 }
 
+// How far from the longest edge of a sliver a hit of it may be found. Without fused multiply-add the normal, a cross
+// product of edges, is off by a few e |edge| |edge|, which turns the plane about a corner; what that moves the hit is
+// the more, the less the ray goes along the true normal. No rounding makes a hit far away of it.
+double distance_in_doubt(const TriangleCorners& triangle, glm::dvec3 direction) {
+    const glm::dvec3 e1 = triangle.p[1] - triangle.p[0], e2 = triangle.p[2] - triangle.p[0];
+    const glm::dvec3 normal = glm::cross(e1, e2);
+    const double edges = glm::length(e1) + glm::length(e2), thickness = glm::length(normal) / (edges + 1e-30);
+    const double across = std::fabs(glm::dot(normal, glm::normalize(direction)));
+    const double turned = 4 * 6e-8 * edges * glm::length(e1) * glm::length(e2) / (across + 1e-30);
+    return 4 * thickness + std::clamp(turned, 5e-2, 0.5);
+}
+
 constexpr double edge_doubt = 3e-5;
 
 void consider(Answer& answer, const ExactHit& hit, double t_max) {
@@ -66,8 +78,9 @@ RayArrays rays_from(glm::vec3 origin, std::size_t count, Random& random, bool na
     glm::vec3 direction = random.direction();
     for (std::size_t i = 0; i < count; ++i) {
         if (i % 64 == 0) direction = random.direction();
-        glm::vec3 d = narrow ? direction + random.point(0.04f) : random.direction() * random.between(0.2f, 3.0f);
-        if (i % 16 == 3) d[i / 16 % 3] = 0;                                           // in the plane of an axis
+        glm::vec3 d = narrow ? direction + random.point(0.04f) : random.direction();
+        if (!narrow) d *= random.between(0.2f, 3.0f);  // a statement of its own: every compiler draws in this order
+        if (i % 16 == 3) d[i / 16 % 3] = 0;            // in the plane of an axis
         if (i % 64 == 7) d = {0, 0, 0}, d[i / 64 % 3] = i % 128 < 64 ? 1.0f : -1.0f;  // along an axis
         for (int a = 0; a < 3; ++a) rays.origin[a][i] = origin[a], rays.direction[a][i] = d[a];
         if (i % 5 == 4) rays.t_max[i] = random.between(0.5f, 15.0f);
@@ -82,7 +95,8 @@ glm::vec3 origin_in(const ShapeSet& set, int i, Random& random) {
         const auto& p = set.triangles[set.triangles.size() / 2].p;  // on a surface
         return (p[0] + p[1] + p[2]) / 3.0f;
     }
-    if (i == 2 && !set.triangles.empty()) return set.triangles.front().p[1];  // at a corner
+    if (i == 2 && !set.triangles.empty()) return set.triangles.front().p[1];                          // at a corner
+    if (i == 3 && !set.spheres.empty()) return set.spheres[0].center + 0.5f * set.spheres[0].radius;  // inside
     return middle + random.point(i % 2 == 0 ? 5.0f : 25.0f);
 }
 
@@ -109,15 +123,12 @@ void check_hits(const ShapeSet& set, const RayArrays& rays, const HitArrays& hit
             continue;
         }
         const double t = hits.t[i], doubt = 2e-4 * std::max(1.0, std::fabs(t));
-        const glm::dvec3 point = glm::dvec3(rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]) +
-                                 t * glm::dvec3(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
+        const glm::dvec3 direction = {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
+        const glm::dvec3 point = glm::dvec3(rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]) + t * direction;
         const bool exists =
             std::ranges::any_of(answer.possible, [&](double p) { return std::fabs(p - t) < doubt; }) ||
             std::ranges::any_of(answer.slivers, [&](const TriangleCorners* triangle) {
-                const glm::vec3 e1 = triangle->p[1] - triangle->p[0], e2 = triangle->p[2] - triangle->p[0];
-                const float thickness = glm::length(glm::cross(e1, e2)) / (glm::length(e1) + glm::length(e2) + 1e-30f);
-                // Its plane is off by e |edge| / thickness, without fused multiply-add.
-                return distance_to_longest_edge(*triangle, point) < 4 * thickness + 5e-2;
+                return distance_to_longest_edge(*triangle, point) < distance_in_doubt(*triangle, direction);
             });
         wrong += !exists || t > answer.certain + doubt;
     }
@@ -146,7 +157,10 @@ TEST_P(Traversal, FindsTheHitsThatALoopOverAllShapesFinds) {
             int disagree = 0;
             for (std::size_t i = 0; i < rays.size(); ++i) {
                 disagree += (blocked.id[i] == 0) != (single.id[i] >= 0);
-                disagree += (beam_blocked.id[i] == 0) != (beam.id[i] >= 0);
+                // Beams of other rays are split elsewhere, and so may round otherwise what is a hit only within
+                // rounding.
+                const bool in_doubt = std::isinf(answers[i].certain) && !answers[i].possible.empty();
+                disagree += !in_doubt && (beam_blocked.id[i] == 0) != (beam.id[i] >= 0);
             }
             EXPECT_EQ(disagree, 0) << "any hit against nearest hit in " << set.name;
         }

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Builds the fuzzers and runs each for SECONDS (default 60): tests/fuzz/run.sh [SECONDS] [NAME...]
+# Builds the fuzzers and runs each for SECONDS (default 60), as many at a time as there are cores:
+# tests/fuzz/run.sh [SECONDS] [NAME...]
 # New inputs go to build/fuzz/corpus, findings to build/fuzz/findings; a finding ends with exit code 1.
 # A finding is reproduced with: build/fuzz/fuzz_NAME FINDING
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-seconds=${1:-60}
+export seconds=${1:-60}
 shift || true
 
 cmake --preset fuzz >/dev/null
@@ -17,23 +18,23 @@ if [ ${#names[@]} -eq 0 ]; then
     done
 fi
 
-mkdir -p build/fuzz/findings
-export ASAN_OPTIONS=allocator_may_return_null=0
-failed=0
-for name in "${names[@]}"; do
+fuzz() { # fuzz NAME
+    local name=$1 log=build/fuzz/$1.log dictionary=tests/fuzz/$1.dict outcome=0
     mkdir -p "build/fuzz/corpus/$name"
-    dictionary=tests/fuzz/$name.dict
-    log=build/fuzz/$name.log
-    echo "fuzz $name for $seconds s"
     # A single input may not take more than 256 MB at once, or 10 s.
-    if ! "build/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=256 -rss_limit_mb=2048 \
+    "build/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=256 -rss_limit_mb=2048 \
         -max_len=16384 -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$name-" \
         $([ -f "$dictionary" ] && echo "-dict=$dictionary") \
-        "build/fuzz/corpus/$name" "tests/fuzz/corpus/$name" >"$log" 2>&1; then
+        "build/fuzz/corpus/$name" "tests/fuzz/corpus/$name" >"$log" 2>&1 || outcome=1
+    echo "fuzz $name for $seconds s"
+    if [ $outcome -ne 0 ]; then
         echo "  FINDING, see $log:"
         grep -aE "ERROR|SUMMARY|broken promise|Test unit written" "$log" | head -8 | sed 's/^/  /' || true
-        failed=1
     fi
     grep -aE "stat::number_of_executed_units|cov:" "$log" | tail -2 | sed 's/^/  /' || true
-done
-exit $failed
+    return $outcome
+}
+export -f fuzz
+export ASAN_OPTIONS=allocator_may_return_null=0
+mkdir -p build/fuzz/findings
+printf '%s\n' "${names[@]}" | xargs -P "$(nproc)" -I '{}' bash -c 'fuzz {}'

@@ -17,20 +17,22 @@ inline std::uint32_t blocks_for(std::size_t shapes) {
 // whole blocks, a little every shape, so that the cost still falls while a block empties. Whole frames of the BVH are
 // 4 to 8 % faster than with costs in blocks of four.
 inline double leaf_cost(std::uint32_t shapes) {
-    return static_cast<double>(48 * ((shapes + block_width - 1) / block_width) + shapes) / 64;
+    const auto blocks = (shapes + block_width - 1) / block_width;
+    return static_cast<double>(48 * blocks + shapes) / 64;
 }
 
 // corner[i][axis][lane]: corner i of the triangle in that lane. Empty lanes hold NaN and id -1: every comparison with
 // a NaN is false, so they are never hit (hence no -ffast-math).
 struct alignas(64) TriangleBlock {
-    TriangleBlock() {}  // without values: arrays of blocks are filled by all threads
+    // Without values, as `= default` would not be where an array is made: arrays of blocks are filled by all threads.
+    TriangleBlock() {}  // NOLINT(modernize-use-equals-default)
     float corner[3][3][block_width];
     std::int32_t id[block_width];  // triangle index, CompiledScene order
 };
 
 // Empty lanes hold a NaN centre, radius 0 and id -1.
 struct alignas(64) SphereBlock {
-    SphereBlock() {}
+    SphereBlock() {}  // NOLINT(modernize-use-equals-default)
     float center[3][block_width];
     float radius[block_width];
     std::int32_t id[block_width];  // sphere index (not yet offset by the triangle count)

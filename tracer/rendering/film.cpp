@@ -54,8 +54,7 @@ float normalizing_exposure(const Film& film) {
     for_each_pixel(film, [&](int, int, std::size_t tile, int lane) {
         if (film.samples[tile] == 0) return;
         const float scale = film_scale(1, film.samples[tile]);
-        for (int channel = 0; channel < 3; ++channel)
-            largest = std::max(largest, film.tiles[tile].rgb[channel][lane] * scale);
+        for (const auto& channel : film.tiles[tile].rgb) largest = std::max(largest, channel[lane] * scale);
     });
     return 1 / largest;
 }
