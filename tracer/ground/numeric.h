@@ -19,9 +19,9 @@ inline constexpr float box_padding = 8e-7f;
 inline constexpr float slab_slack = 4e-7f;
 
 // A triangle grows for each ray by this fraction of its distance from the ray's origin, so that no ray slips between
-// triangles that share an edge or a corner: the weights u . d and v . d are off by some e |edge| |distance| |d|. That is
-// less than coordinates are rounded by. Rays near its plane would see a triangle grow without end: by no more than the
-// second, a fraction of its own size.
+// triangles that share an edge or a corner: the weights u . d and v . d are off by some e |edge| |distance| |d|. That
+// is less than coordinates are rounded by. Rays near its plane would see a triangle grow without end: by no more than
+// the second, a fraction of its own size.
 inline constexpr float triangle_growth = 2e-7f;
 inline constexpr float most_growth = 0.02f;
 

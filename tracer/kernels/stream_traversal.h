@@ -19,9 +19,6 @@ HWY_BEFORE_NAMESPACE();
 namespace raywalk {
 namespace HWY_NAMESPACE {
 
-// So many rays or fewer go on alone.
-inline constexpr int fewest_together = 2;
-
 HWY_INLINE RayHit hit_of(const BeamHits& hits, int i) { return {hits.t[i], hits.u[i], hits.v[i], hits.id[i]}; }
 HWY_INLINE void set_hit(const RayHit& hit, int i, BeamHits& hits) {
     hits.t[i] = hit.t;
@@ -177,16 +174,12 @@ std::uint64_t traverse_stream(const CompiledScene& scene, const Bvh& bvh, std::u
     while (!stack.empty()) {
         const StreamVisit visit = stack.pop();
         const std::uint64_t visitors = visit.rays & ~done;
-        if (std::popcount(visitors) <= fewest_together) {
-            for (std::uint64_t rest = visitors; rest != 0; rest &= rest - 1) {
-                const int i = std::countr_zero(rest);
-                RayHit hit = hit_of(hits, i);
-                const bool met = traverse_single<any_hit>(scene, bvh, visit.at, {rays, i}, hit);
-                if constexpr (any_hit)
-                    done |= static_cast<std::uint64_t>(met) << i;
-                else
-                    set_hit(hit, i, hits);
-            }
+        if (visitors == 0) continue;
+        if (std::has_single_bit(visitors)) {  // it goes on alone
+            const int i = std::countr_zero(visitors);
+            RayHit hit = hit_of(hits, i);
+            if (traverse_single<any_hit>(scene, bvh, visit.at, {rays, i}, hit)) done |= visitors;
+            if constexpr (!any_hit) set_hit(hit, i, hits);
         } else if (visit.at.leaf()) {
             done |= visit_leaf<any_hit>(scene, visit.at, visitors, rays, hits);
         } else {
