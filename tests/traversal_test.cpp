@@ -208,8 +208,8 @@ TEST_P(Traversal, LetsNoRayOutOfAClosedMesh) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllKernels, Traversal, testing::ValuesIn(all_cases()), [](const auto& named) {
-    return std::string(info.param.accelerator == Accelerator::bvh ? "Bvh_" : "KdTree_") +
-           std::string(info.param.kernels->name);
+    return std::string(named.param.accelerator == Accelerator::bvh ? "Bvh_" : "KdTree_") +
+           std::string(named.param.kernels->name);
 });
 
 void expect_same_bits(const HitArrays& a, const HitArrays& b, const std::string& what) {
