@@ -73,8 +73,8 @@ class Descriptor {
 template <class Make>
 fs::path free_name_beside(const fs::path& file, const Make& make) {
     for (int i = 0;; ++i) {
-        const fs::path name = folder_of(file) / ("." + file.filename().string() + "-" + std::to_string(getpid()) + "-" +
-                                                 std::to_string(i) + ".part");
+        fs::path name = folder_of(file) / ("." + file.filename().string() + "-" + std::to_string(getpid()) + "-" +
+                                           std::to_string(i) + ".part");
         if (make(name) >= 0) return name;
         if (errno != EEXIST) return {};
     }
