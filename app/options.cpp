@@ -81,10 +81,10 @@ CommandLine read_arguments(const std::vector<std::string>& arguments, std::vecto
 
 Mode mode_of(const CommandLine& line) {
     std::vector<std::string_view> given;
-    if (line.travel) given.push_back("-travel");
-    if (line.render) given.push_back("-render");
-    if (line.capture) given.push_back("--capture");
-    if (line.check) given.push_back("--check");
+    if (line.travel) given.emplace_back("-travel");
+    if (line.render) given.emplace_back("-render");
+    if (line.capture) given.emplace_back("--capture");
+    if (line.check) given.emplace_back("--check");
     if (given.size() > 1)
         throw UsageError(std::string(given[0]) + " and " + std::string(given[1]) +
                          " exclude each other: choose one of them");

@@ -181,7 +181,7 @@ bool Presenter::State::rebuild() {
                                                            .presentMode = vk::PresentModeKHR::eFifo,
                                                            .clipped = true,
                                                            .oldSwapchain = *old}};
-    for (const VkImage image : swapchain.getImages())
+    for (VkImage image : swapchain.getImages())
         images.push_back({image, make_view(device.device, image, format.format),
                           vk::raii::Semaphore(device.device, vk::SemaphoreCreateInfo{})});
     stale = false;

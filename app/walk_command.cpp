@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "app/commands.h"
@@ -20,7 +21,7 @@ nlohmann::ordered_json percentiles(std::vector<double> seconds) {
     if (seconds.empty()) return result;
     std::ranges::sort(seconds);
     const auto at = [&](double share) {
-        return 1000 * seconds[static_cast<std::size_t>(share * static_cast<double>(seconds.size() - 1) + 0.5)];
+        return 1000 * seconds[static_cast<std::size_t>(std::lround(share * static_cast<double>(seconds.size() - 1)))];
     };
     result["p50_ms"] = at(0.5);
     result["p90_ms"] = at(0.9);

@@ -142,6 +142,20 @@ TEST(KdClip, IsPerfectForATriangle) {
     EXPECT_NEAR(parts.upper.upper.y, 1, 1e-5);
 }
 
+TEST(KdClip, IsPerfectInACellThatCutsTheTriangleOnEverySide) {
+    // What lies outside the cell must not widen what is left: of the slope from (0, 0) to (4, 4) the lower half of the
+    // cell [1, 2]^2 keeps [1, 1.5]^2.
+    const TriangleCorners triangle{{{0, 0, 1}, {4, 4, 1}, {4, 4, 3}}};
+    const Parts parts = split_triangle(triangle, {{1, 1, 0}, {2, 2, 4}}, 0, 1.5f);
+    EXPECT_NEAR(parts.lower.upper.y, 1.5, 1e-5);
+    EXPECT_NEAR(parts.upper.lower.y, 1.5, 1e-5);
+    EXPECT_EQ(parts.lower.lower.y, 1);
+    EXPECT_EQ(parts.upper.upper.y, 2);
+    // Where x ends at 2, the upper edge has risen to z = 2 of the 3 that it reaches outside.
+    EXPECT_NEAR(parts.upper.upper.z, 2, 1e-5);
+    EXPECT_NEAR(parts.lower.upper.z, 1.75, 1e-5);
+}
+
 TEST(KdClip, LeavesNothingOfASphereDeepInsideIt) {
     const SphereShape sphere{{0, 0, 0}, 10};
     const Parts parts = split_sphere(sphere, {{-1, -1, -1}, {1, 1, 1}}, 0, 0);

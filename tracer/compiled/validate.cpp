@@ -265,7 +265,7 @@ class KdChecker : Checker {
         for (std::size_t id = 0; id < somewhere.size(); ++id) {
             if (!finite(blocks.shapes()[id])) continue;
             if (!somewhere[id]) return text(blocks.kind(), ' ', id, " is in no leaf");
-            const std::string wrong = check_shape(blocks, ids, static_cast<std::int32_t>(id), 0, hierarchy.bounds);
+            std::string wrong = check_shape(blocks, ids, static_cast<std::int32_t>(id), 0, hierarchy.bounds);
             if (!wrong.empty()) return wrong;
         }
         return "";

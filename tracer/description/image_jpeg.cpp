@@ -110,7 +110,7 @@ std::string decode_jpeg(std::span<const char> bytes, const ImageRefusal& refusal
     JpegErrors errors{};
     prepare(errors);
     jpeg.err = &errors.manager;
-    const std::string problem = decode(jpeg, errors, bytes, refusal, image);
+    std::string problem = decode(jpeg, errors, bytes, refusal, image);
     jpeg_destroy_decompress(&jpeg);
     return problem;
 }

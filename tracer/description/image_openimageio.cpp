@@ -31,7 +31,7 @@ const char* plugin_name(ImageFormat format) {
 }
 
 // The first line of what OpenImageIO says went wrong.
-std::string first_line(std::string message) {
+std::string first_line(const std::string& message) {
     if (message.empty()) return "it is damaged";
     if (message.find("bad_alloc") != std::string::npos) return "it needs too much memory";
     return message.substr(0, message.find('\n'));

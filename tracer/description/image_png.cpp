@@ -104,7 +104,7 @@ std::string decode_png(std::span<const char> bytes, const ImageRefusal& refusal,
     task.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &task, on_error, on_warning);
     if (task.png) task.info = png_create_info_struct(task.png);
     if (!task.info) throw std::bad_alloc();
-    const std::string problem = decode(task, refusal, image);
+    std::string problem = decode(task, refusal, image);
     png_destroy_read_struct(&task.png, &task.info, nullptr);
     for (std::uint32_t& texel : image.texels) texel &= 0xFF'FFFF;  // without alpha
     return problem;

@@ -76,7 +76,7 @@ fs::path free_name_beside(const fs::path& file, const Make& make) {
     constexpr std::size_t kept = 200;  // of a long name: with what is added here it stays below the usual 255 bytes
     const std::string start = "." + file.filename().string().substr(0, kept) + "-" + std::to_string(getpid()) + "-";
     for (int i = 0;; ++i) {
-        const fs::path name = folder_of(file) / (start + std::to_string(i) + ".part");
+        fs::path name = folder_of(file) / (start + std::to_string(i) + ".part");
         if (make(name) >= 0) return name;
         if (errno != EEXIST) return {};
     }
