@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # ./bench.sh [--quick] [--json FILE] [--mesh FILE]... [--only PART]...: measures Raywalk against Embree, tinyobjloader and
 # assimp, which it installs where they are missing. Markdown goes to stdout and, after a whole run, into README.md between
-# its benchmark marks; the plot of growth goes beside its pictures. Exit code 1: contenders disagree about what was hit.
+# its benchmark marks; the plot of growth goes beside its pictures. Exit code 1: a hit or a picture of ours is wrong.
 set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
 source "$root/.ci/prepare.sh"

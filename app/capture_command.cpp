@@ -5,6 +5,7 @@
 #include "app/console.h"
 #include "app/frame_writer.h"
 #include "app/interrupts.h"
+#include "app/output_files.h"
 #include "app/presenter.h"
 #include "app/statistics.h"
 #include "tracer/description/image.h"
@@ -89,7 +90,9 @@ int capture(const Options& options, const LoadedScene& loaded) {
         if (!options.frames) continue;
         capture.trace(view);
         if (interrupted()) break;  // OUT holds what there is of this frame
-        capture.save(frame_name(*options.frames, frames++));
+        const std::filesystem::path frame = frame_name(*options.frames, frames++);
+        require_no_input(frame, loaded.scene);
+        capture.save(frame);
     }
     if (!interrupted()) capture.trace(view);
     capture.save(options.output);
@@ -100,11 +103,11 @@ int capture(const Options& options, const LoadedScene& loaded) {
         write_statistics(*options.stats, statistics);
     }
     if (interrupted()) {
-        print_error("interrupted: '" + options.output.string() + "' holds what there was of the picture");
+        print_error("interrupted: " + quoted_name(options.output.string()) + " holds what there was of the picture");
         return exit_interrupted;
     }
     if (!quiet)
-        print_note("captured " + options.output.string() +
+        print_note("captured " + printable(options.output.string()) +
                    (frames > 0 ? " and " + count_text(frames, "frame") : std::string()) + ", " +
                    count_text(samples_per_pixel(options, loaded.scene), "sample") + " a pixel, in " +
                    duration_text(watch.seconds()));

@@ -25,7 +25,7 @@ std::string mesh_lines(const Scene& scene, const std::map<std::filesystem::path,
     std::string text;
     for (const Mesh& mesh : scene.meshes) {
         const TriangleMesh& file = files.at(mesh.file);
-        text += "mesh: " + mesh.file.string() + ", " + count_text(file.faces.size(), "triangle") + ", " +
+        text += "mesh: " + printable(mesh.file.string()) + ", " + count_text(file.faces.size(), "triangle") + ", " +
                 count_text(file.positions.size(), "vertex", "vertices") + ", " + (mesh.smooth ? "smooth" : "flat") +
                 (file.normals.empty() ? "" : ", with normals") + "\n";
     }
@@ -35,8 +35,8 @@ std::string mesh_lines(const Scene& scene, const std::map<std::filesystem::path,
 std::string image_lines(const std::map<std::filesystem::path, Image>& files) {
     std::string text;
     for (const auto& [file, image] : files)
-        text += "image: " + file.string() + ", " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                " pixels\n";
+        text += "image: " + printable(file.string()) + ", " + std::to_string(image.width) + " x " +
+                std::to_string(image.height) + " pixels\n";
     return text;
 }
 
@@ -62,7 +62,7 @@ int check_command(const Options& options) {
     errors.insert(errors.end(), images.errors.begin(), images.errors.end());
     if (!errors.empty()) throw InputError(std::move(errors));
     if (options.verbosity == Verbosity::quiet) return exit_done;
-    print_result("scene: " + scene.file.string() + "\n" + picture_line(options, scene) + shape_lines(scene) +
+    print_result("scene: " + printable(scene.file.string()) + "\n" + picture_line(options, scene) + shape_lines(scene) +
                  mesh_lines(scene, meshes.files) + image_lines(images.files));
     return exit_done;
 }

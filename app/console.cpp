@@ -6,8 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <system_error>
+
+#include "tracer/ground/file_bytes.h"
 
 namespace raywalk {
 
@@ -29,6 +30,18 @@ int write_all(int descriptor, std::string_view text) {
     return 0;
 }
 
+// Of messages of the system and of libraries, too, nothing may steer the terminal; their lines stay.
+std::string harmless(std::string_view text) {
+    std::string lines;
+    for (;;) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        lines += printable(text.substr(0, end));
+        if (end == text.size()) return lines;
+        lines += '\n';
+        text.remove_prefix(end + 1);
+    }
+}
+
 // `code`: an SGR colour of the terminal.
 std::string coloured(std::string_view text, std::string_view code) {
     if (!standard_error().colours) return std::string(text);
@@ -36,21 +49,28 @@ std::string coloured(std::string_view text, std::string_view code) {
 }
 
 void print_labelled(std::string_view label, std::string_view colour, std::string_view what) {
-    write_all(STDERR_FILENO, "raywalk: " + coloured(label, colour) + " " + std::string(what) + "\n");
+    write_all(STDERR_FILENO, "raywalk: " + coloured(label, colour) + " " + harmless(what) + "\n");
 }
 
 constexpr std::string_view red = "1;31", magenta = "1;35";
 
 // The line that a diagnostic points to, unless it has it already.
 Diagnostic with_line(Diagnostic diagnostic) {
-    constexpr std::size_t longest_line = 1 << 20;
+    constexpr std::uint64_t largest_file = 256 << 20;
     if (!diagnostic.source_line.empty() || diagnostic.where.line == 0) return diagnostic;
-    std::ifstream file(diagnostic.where.file, std::ios::binary);
-    std::string line;
-    for (std::size_t number = 0; number < diagnostic.where.line; ++number)
-        if (!std::getline(file, line) || line.size() > longest_line) return diagnostic;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    quote_line(diagnostic, line);
+    try {
+        const FileBytes bytes = read_file_bytes(diagnostic.where.file, largest_file);
+        std::string_view rest = bytes.text();
+        for (std::size_t number = 1; number < diagnostic.where.line; ++number) {
+            const std::size_t end = rest.find('\n');
+            if (end == std::string_view::npos) return diagnostic;
+            rest.remove_prefix(end + 1);
+        }
+        std::string_view line = rest.substr(0, rest.find('\n'));
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        quote_line(diagnostic, line);
+    } catch (const FileProblem&) {  // it changed meanwhile
+    }
     return diagnostic;
 }
 
@@ -65,7 +85,7 @@ Console standard_error() {
 
 void print_error(std::string_view what) { print_labelled("error:", red, what); }
 void print_warning(std::string_view what) { print_labelled("warning:", magenta, what); }
-void print_note(std::string_view what) { write_all(STDERR_FILENO, "raywalk: " + std::string(what) + "\n"); }
+void print_note(std::string_view what) { write_all(STDERR_FILENO, "raywalk: " + harmless(what) + "\n"); }
 
 void print_diagnostics(std::span<const Diagnostic> diagnostics) {
     std::string text;
@@ -73,7 +93,7 @@ void print_diagnostics(std::span<const Diagnostic> diagnostics) {
         std::string one = to_string(with_line(diagnostic));
         const bool is_error = diagnostic.severity == Severity::error;
         const std::string_view label = is_error ? ": error: " : ": warning: ";
-        if (const std::size_t at = one.find(label, diagnostic.where.file.size()); at != std::string::npos)
+        if (const std::size_t at = one.find(label, printable(diagnostic.where.file).size()); at != std::string::npos)
             one.replace(at + 2, label.size() - 3,
                         coloured(label.substr(2, label.size() - 3), is_error ? red : magenta));
         text += one + "\n";

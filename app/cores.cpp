@@ -19,11 +19,11 @@ int cores_of_quota(std::string_view cpu_max) {
     if (blank == std::string_view::npos) return 0;
     const long long quota = number_at(0), period = number_at(blank + 1);
     if (quota <= 0 || period <= 0) return 0;  // "max 100000"
-    return static_cast<int>(std::clamp((quota + period - 1) / period, 1LL, 1024LL));
+    return static_cast<int>(std::clamp((quota + period - 1) / period, 1LL, static_cast<long long>(most_threads)));
 }
 
 int usable_cores() {
-    const int cores = std::max(1, omp_get_max_threads());
+    const int cores = std::clamp(omp_get_max_threads(), 1, most_threads);  // OMP_NUM_THREADS can say anything
     std::ifstream file("/sys/fs/cgroup/cpu.max");
     std::string text;
     std::getline(file, text);

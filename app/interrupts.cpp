@@ -41,7 +41,10 @@ void catch_interrupts() {
     install(SIGINT);
     install(SIGTERM);
     if (!is_ignored(SIGHUP)) install(SIGHUP);  // ignored: started by nohup
+    install(SIGXCPU);                          // the end of the time that ulimit gives
+    // Writes fail instead, with a message: nobody reads, or the file would be larger than ulimit allows.
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 GracefulInterrupts::GracefulInterrupts() { graceful = true; }

@@ -1,6 +1,7 @@
 #include "app/loaded_scene.h"
 
 #include "app/console.h"
+#include "app/output_files.h"
 #include "tracer/description/scene_parser.h"
 #include "tracer/ground/stopwatch.h"
 
@@ -16,6 +17,7 @@ LoadedScene load_scene(const Options& options) {
         const Stopwatch watch;
         loaded.scene = read_scene(options.scene, options.limits, warnings);
         loaded.read_seconds = watch.seconds();
+        require_inputs_kept(options, loaded.scene);
         loaded.compiled = compile(loaded.scene, options.compile, options.limits, warnings, &loaded.compile_statistics);
     } catch (const InputError&) {
         print_warnings();

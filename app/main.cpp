@@ -6,11 +6,12 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/interrupts.h"
-#include "tracer/ground/whole_file.h"
+#include "app/output_files.h"
 
 namespace raywalk {
 
@@ -48,18 +49,6 @@ void wait_without_spinning(char** arguments) {
     if (std::getenv("OMP_WAIT_POLICY") != nullptr) return;
     setenv("OMP_WAIT_POLICY", "passive", 1);
     execv("/proc/self/exe", arguments);
-}
-
-void require_writable(const std::filesystem::path& file) {
-    if (const std::string obstacle = obstacle_to_writing(file); !obstacle.empty())
-        throw WorkError("cannot write '" + file.string() + "': " + obstacle);
-}
-
-// Known before the work begins rather than after it.
-void require_writable_outputs(const Options& options) {
-    if (options.mode == Mode::render || options.mode == Mode::capture) require_writable(options.output);
-    if (options.frames) require_writable(*options.frames);
-    if (options.stats && *options.stats != "-") require_writable(*options.stats);
 }
 
 int run(const Options& options, char** arguments) {
@@ -112,6 +101,10 @@ int main(int count, char** arguments) {
         return exit_input;
     } catch (const std::bad_alloc&) {
         print_error(out_of_memory);
+    } catch (const std::system_error& error) {
+        const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+        print_error(std::string(no_thread ? "cannot start a thread, ask for fewer with --threads: " : "") +
+                    error.what());
     } catch (const std::exception& error) {
         print_error(error.what());
     }

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "app/cores.h"
 #include "tracer/ground/spelling.h"
 #include "tracer/kernels/kernels.h"
 
@@ -117,7 +118,7 @@ const OptionSpec table[] = {
      [](Line& line, Value value) { line.options.frames = value; }},
 
     {"--threads", "", "N", speed, "threads (default: every core this process may use)",
-     [](Line& line, Value value) { line.options.threads = integer<int>("--threads", value, 1, 1024); }},
+     [](Line& line, Value value) { line.options.threads = integer<int>("--threads", value, 1, most_threads); }},
     {"--accelerator", "", "NAME", speed, "bvh (default) or kdtree: same picture, another way to find what a ray hits",
      [](Line& line, Value value) {
          line.accelerator_given = true;

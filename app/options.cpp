@@ -156,6 +156,7 @@ std::variant<Options, Answer> parse_command_line(const std::vector<std::string>&
         throw UsageError("--stats measures a picture, and --check makes none: leave one of them out");
     check_frames(options);
     check_accelerator(line);
+    if (options.size) options.limits.pixels = ~std::uint64_t{0};  // the scene's own size does not matter then
     if (options.threads == 0) options.threads = usable_cores();
     return std::move(options);
 }

@@ -90,13 +90,13 @@ int render_command(const Options& options, const LoadedScene& loaded) {
     if (share < 1) {
         char percent[32];
         std::snprintf(percent, sizeof percent, "%.1f %%", 100 * share);
-        print_error("interrupted after " + duration_text(seconds) + ": '" + options.output.string() + "' holds " +
-                    percent + " of the picture's samples");
+        print_error("interrupted after " + duration_text(seconds) + ": " + quoted_name(options.output.string()) +
+                    " holds " + percent + " of the picture's samples");
         return exit_interrupted;
     }
     if (verbose) print_ray_times(renderer, seconds);
     if (!quiet)
-        print_note("rendered " + options.output.string() + ", " + size_text(renderer.film()) + " pixels, " +
+        print_note("rendered " + printable(options.output.string()) + ", " + size_text(renderer.film()) + " pixels, " +
                    count_text(samples, "sample") + " each, in " + duration_text(seconds));
     return exit_done;
 }

@@ -45,6 +45,7 @@ nlohmann::ordered_json walk_statistics(const Options& options, const LoadedScene
                                        const std::string& device) {
     nlohmann::ordered_json statistics = statistics_of(options, loaded, renderer, render.traced_seconds());
     statistics["frames"] = {{"moving", percentiles(render.moving_frame_seconds())},
+                            {"interval", percentiles(record.frame_intervals)},
                             {"answer", percentiles(record.answer_seconds)},
                             {"present", percentiles(record.present_seconds)}};
     statistics["viewer"] = viewer_of(record.camera);
@@ -54,7 +55,7 @@ nlohmann::ordered_json walk_statistics(const Options& options, const LoadedScene
 
 int walk(const Options& options, const LoadedScene& loaded) {
     const GracefulInterrupts graceful;
-    const std::string name = options.scene.filename().string();
+    const std::string name = printable(options.scene.filename().string());
     Window window(picture_size(options, loaded.scene), "Raywalk - " + name);
     Presenter presenter(window.handle());
     if (options.verbosity == Verbosity::verbose) print_note("Vulkan device: " + presenter.device_name());

@@ -45,7 +45,9 @@ struct Walk {
 
     View view = setup.view;
     bool visible = false, present_again = false, title_stale = false;
-    double next_present = 0, next_title = 0, last_change = 0;
+    double next_present = 0, next_title = 0, last_change = -standing_after;
+    double last_shown = 0;
+    bool shown_moving = false;  // the camera moved when the last frame was shown
     std::uint64_t newest_id = 1;
     struct Change {
         std::uint64_t id;
@@ -102,6 +104,10 @@ void Walk::show_frame(double now) {
     if (outcome == Presenter::Outcome::hidden) return;
     if (record.present_seconds.empty()) presenter.warm_up();
     record.present_seconds.push_back(shown - now);
+    const bool moving = now - last_change < standing_after;
+    if (moving && shown_moving) record.frame_intervals.push_back(shown - last_shown);
+    shown_moving = moving;
+    last_shown = shown;
     title_stale = true;
     if (unanswered && presenter.shown_frame().camera_id >= unanswered->id) {
         record.answer_seconds.push_back(shown - unanswered->seconds);

@@ -6,6 +6,7 @@
 #include "tests/support/process.h"
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/compiled/scene_files.h"
+#include "tracer/description/image.h"
 
 namespace raywalk {
 namespace {
@@ -249,6 +250,19 @@ TEST(Compile, BudgetsCountTheWholeScene) {
     ASSERT_EQ(errors.size(), 1u);
     EXPECT_THAT(errors[0].what, HasSubstr("the scene has 12 triangles"));
     EXPECT_THAT(errors[0].expected, HasSubstr("--max-triangles"));
+
+    const std::filesystem::path images[] = {folder.path() / "a.png", folder.path() / "b.png", folder.path() / "c.png"};
+    Scene textured;
+    for (const std::filesystem::path& image : images) {
+        write_image(image, 4, 4, std::vector<std::uint8_t>(48));
+        textured.planes.push_back({.texture = {.pattern = ImageTexture{.file = image}}, .normal = {0, 1, 0}});
+    }
+    limits.all_image_pixels = 48;
+    EXPECT_TRUE(errors_of(textured, limits).empty());
+    limits.all_image_pixels = 31;
+    const std::vector<Diagnostic> image_errors = errors_of(textured, limits);
+    ASSERT_EQ(image_errors.size(), 1u);
+    EXPECT_THAT(image_errors[0].expected, HasSubstr("--max-all-image-pixels"));
 
     Scene lit;
     lit.file = "test.scene";

@@ -117,6 +117,29 @@ TEST(ObjTest, NumbersAreCorrectlyRounded) {
         ASSERT_EQ(std::bit_cast<std::uint32_t>(got[i]), std::bit_cast<std::uint32_t>(expected[i])) << expected[i];
 }
 
+// Where rounding twice would go wrong: the middle of two floats, its neighbours in double precision, cut to any number
+// of digits.
+TEST(ObjTest, NumbersNearTheMiddleOfTwoFloatsAreCorrectlyRounded) {
+    std::mt19937 random(11);
+    std::string text;
+    std::vector<float> expected;
+    for (int i = 0; i < 90000; ++i) {
+        const auto bits = static_cast<std::uint32_t>((100 + random() % 60) << 23 | (random() & 0x7FFFFF));
+        const auto f = std::bit_cast<float>(bits);  // between 2^-27 and 2^33
+        const double middle = 0.5 * (double{f} + double{std::nextafter(f, 1e30f)});
+        const auto near = std::bit_cast<double>(std::bit_cast<std::uint64_t>(middle) + random() % 9 - 4);
+        char buffer[80];
+        std::snprintf(buffer, sizeof buffer, i % 4 == 0 ? "%.*f" : "%.*g", static_cast<int>(7 + random() % 24), near);
+        text += (i % 3 == 0 ? "\nv " : " ") + std::string(buffer);
+        expected.push_back(std::strtof(buffer, nullptr));
+    }
+    const TriangleMesh mesh = parse(text + "\nf 1 2 3\n");
+    ASSERT_EQ(mesh.positions.size() * 3, expected.size());
+    const auto* got = reinterpret_cast<const float*>(mesh.positions.data());
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(got[i]), std::bit_cast<std::uint32_t>(expected[i])) << expected[i];
+}
+
 TEST(ObjTest, OtherStatementsAreIgnoredAndUnknownOnesWarnedOfOnce) {
     std::vector<Diagnostic> warnings;
     const std::string text = "mtllib a.mtl\no a\ng a b\ns off\nusemtl x\nvp 1\nl 1 2\np 1\n# f 1 1 1 \\\n" +

@@ -393,5 +393,41 @@ TEST(Shading, AwkwardEyesAndLightsGiveNoNan) {
         }
 }
 
+// A sphere around the eye that single precision cannot tell from a point there.
+TEST(Shading, SpheresSmallerThanTheRoundingOfTheirPlaceGiveNoNan) {
+    for (const Material& material : materials) {
+        Scene scene;
+        scene.viewer = viewer_along_z(8, 8, 60);
+        scene.viewer.center = {-4.21, -3.64, 1e6};
+        scene.viewer.target = {0, 0, 0};
+        scene.spheres.push_back({.texture = surface({1, 1, 1}, material),
+                                 .center = scene.viewer.center,
+                                 .radius = 4.7e-7,
+                                 .refraction_index = 1.333});
+        scene.spheres.push_back(
+            {.texture = surface({1, 1, 1}, material), .center = {0, 0, 0}, .radius = 1e5, .refraction_index = 1.5});
+        scene.lights.push_back(white_light(scene.viewer.center));
+        const Picture picture = picture_of(scene);
+        EXPECT_EQ(picture.counts.dropped_samples, 0u) << material.name;
+    }
+}
+
+// Mirrors that meet at a hair's angle send rays as far away as numbers go.
+TEST(Shading, RaysThatStartFarBeyondTheSceneGiveNoNan) {
+    for (const double tilt : {1e-4, 1e-7, 1e-8, 1e-9, 1e-12, 0.0}) {
+        Scene scene;
+        scene.viewer = viewer_along_z(24, 24, 1e-5);
+        for (const double offset : {-1.0, 1.0})
+            scene.planes.push_back({.texture = {perfect_mirror, GridTexture{3}},
+                                    .normal = glm::normalize(glm::dvec3(0, 1, offset * tilt)),
+                                    .offset = offset * 1e12});
+        scene.spheres.push_back({.texture = surface({1, 1, 1}, materials[4]), .center = {0, 0, -5}, .radius = 1e-6});
+        scene.lights.push_back(white_light({0, 1, 0}));
+        const Picture picture = picture_of(scene);
+        EXPECT_EQ(picture.counts.dropped_samples, 0u) << tilt;
+        EXPECT_EQ(picture.counts.camera, 24u * 24u);
+    }
+}
+
 }  // namespace
 }  // namespace raywalk

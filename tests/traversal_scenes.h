@@ -17,9 +17,9 @@ namespace raywalk::traversal_test {
 
 struct ShapeSet {
     std::string name;
-    std::vector<TriangleCorners> triangles;
-    std::vector<SphereShape> spheres;
-    std::vector<PlaneRecord> planes;
+    std::vector<TriangleCorners> triangles = {};
+    std::vector<SphereShape> spheres = {};
+    std::vector<PlaneRecord> planes = {};
 };
 
 inline CompiledScene compile_shapes(const ShapeSet& set, Accelerator accelerator) {

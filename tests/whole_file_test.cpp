@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <thread>
+
 #include "tests/support/process.h"
 #include "tracer/ground/error.h"
 
@@ -79,6 +81,41 @@ TEST(WholeFile, ObstaclesAreKnownBeforehand) {
     write_file(folder.path() / "file", "");
     EXPECT_THAT(obstacle_to_writing(folder.path() / "file" / "a.txt"), testing::HasSubstr("is not a folder"));
     EXPECT_EQ(files_in(folder.path()), 1u);
+}
+
+TEST(WholeFile, ANameMayBeAsLongAsTheSystemAllows) {
+    const TemporaryFolder folder;
+    const fs::path longest = folder.path() / (std::string(251, 'a') + ".png");
+    EXPECT_EQ(obstacle_to_writing(longest), "");
+    write_whole(longest, "whole");
+    EXPECT_EQ(read_file(longest), "whole");
+    EXPECT_EQ(files_in(folder.path()), 1u);
+    EXPECT_EQ(obstacle_to_writing(folder.path() / (std::string(252, 'a') + ".png")), "File name too long");
+}
+
+TEST(WholeFile, ALinkThatLeadsToItselfIsAnObstacle) {
+    const TemporaryFolder folder;
+    fs::create_symlink("loop", folder.path() / "loop");
+    EXPECT_EQ(obstacle_to_writing(folder.path() / "loop"), "Too many levels of symbolic links");
+}
+
+TEST(WholeFile, APipeThatNobodyReadsIsNotWaitedFor) {
+    const TemporaryFolder folder;
+    const fs::path pipe = folder.path() / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_THROW(write_whole(pipe, "x"), WorkError);
+    // More than a pipe holds, so that the writer has to wait for the reader.
+    const std::string text(1'000'000, 'x');
+    std::string got;
+    std::thread reader([&] { got = read_file(pipe); });
+    for (;;) try {
+            write_whole(pipe, text);
+            break;
+        } catch (const WorkError&) {  // the reader is not there yet
+            std::this_thread::yield();
+        }
+    reader.join();
+    EXPECT_EQ(got, text);
 }
 
 }  // namespace

@@ -7,21 +7,20 @@
 
 namespace raywalk::bench {
 
-// Rays that graze an edge or a silhouette may be decided either way by formulas that round differently; no more than
-// this share of the rays may be.
-inline constexpr double tolerated_share = 1e-4;
-// Distances may differ by this much, relative to the distance and to the size of the scene.
+// Distances may differ by this much, relative to the distance and to the size of the scene, before the referee is
+// asked.
 inline constexpr float tolerated_distance = 1e-4f;
 
+// Rays that graze an edge, a silhouette or the end of the ray may be decided either way by formulas that round
+// differently: the referee tells them from wrong answers, of which none of ours may be.
 struct Agreement {
     std::size_t rays = 0, different = 0;
-    [[nodiscard]] double share() const {
-        return rays == 0 ? 0 : static_cast<double>(different) / static_cast<double>(rays);
-    }
-    [[nodiscard]] bool good() const { return share() <= tolerated_share; }
+    std::size_t wrong = 0;         // of ours, beyond rounding
+    std::size_t theirs_wrong = 0;  // of theirs
+    [[nodiscard]] bool good() const { return wrong == 0; }
 };
 
 // Rays agree when both hit nothing, the same shape, or something equally far away (shapes share edges).
-Agreement compare(const RaySet& set, const HitArrays& a, const HitArrays& b);
+Agreement compare(const Geometry& geometry, const RaySet& set, const HitArrays& theirs, const HitArrays& ours);
 
 }  // namespace raywalk::bench

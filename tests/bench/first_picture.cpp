@@ -96,7 +96,7 @@ FirstPictureRow measure_first_picture(const std::filesystem::path& program, cons
     const FrameScene frame = read_frame_scene(scene);
     std::vector<double> compile_times;
     for (int round = 0; round < 3; ++round)
-        compile_times.push_back(timed(Clock::process_cpu, [&] { compile_for(frame, Accelerator::kdtree); })());
+        compile_times.push_back(timed(Clock::process_cpu, [&] { compile_for(frame, CompileOptions{}.accelerator); })());
     omp_set_num_threads(threads);
     row.parse_and_build = spread_of(compile_times).median;
     return row;

@@ -1,4 +1,4 @@
-// The doors of intersect.h, asked of Embree: beams as coherent packets of sixteen, the rest ray by ray.
+// The doors of intersect.h, asked of Embree in packets of sixteen, those of beams coherent.
 #include "tests/bench/kernels_on_embree.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -22,18 +22,26 @@ RTCIntersectContext context_of(bool coherent) {
     return context;
 }
 
-std::int32_t shape_id(const CompiledScene& scene, unsigned geometry, unsigned primitive) {
-    return static_cast<std::int32_t>(primitive) + (geometry == 0 ? 0 : scene.triangle_count);
+Vec3 origins(const BeamRays& rays, int) { return splat3(rays.origin); }
+Vec3 origins(const ScatteredRays& rays, int at) {
+    return {load(rays.origin[0] + at), load(rays.origin[1] + at), load(rays.origin[2] + at)};
 }
 
-// Rays [at, at + 16) of a beam; t is where the nearest plane lies.
-void fill(const BeamRays& rays, int at, Real t, RTCRay16& packet) {
-    store(Real(rays.origin[0]), packet.org_x);
-    store(Real(rays.origin[1]), packet.org_y);
-    store(Real(rays.origin[2]), packet.org_z);
-    store(load(rays.direction[0] + at), packet.dir_x);
-    store(load(rays.direction[1] + at), packet.dir_y);
-    store(load(rays.direction[2] + at), packet.dir_z);
+template <class Rays>
+Vec3 directions(const Rays& rays, int at) {
+    return {load(rays.direction[0] + at), load(rays.direction[1] + at), load(rays.direction[2] + at)};
+}
+
+// Rays [at, at + 16); t is where the nearest plane lies.
+template <class Rays>
+void fill(const Rays& rays, int at, Real t, RTCRay16& packet) {
+    const Vec3 origin = origins(rays, at), direction = directions(rays, at);
+    store(origin.x, packet.org_x);
+    store(origin.y, packet.org_y);
+    store(origin.z, packet.org_z);
+    store(direction.x, packet.dir_x);
+    store(direction.y, packet.dir_y);
+    store(direction.z, packet.dir_z);
     store(load(rays.t_min + at), packet.tnear);
     store(t, packet.tfar);
     store(Real(0.0f), packet.time);
@@ -41,24 +49,19 @@ void fill(const BeamRays& rays, int at, Real t, RTCRay16& packet) {
     store(Int(0), reinterpret_cast<std::int32_t*>(packet.flags));
 }
 
-Vec3 directions(const BeamRays& rays, int at) {
-    return {load(rays.direction[0] + at), load(rays.direction[1] + at), load(rays.direction[2] + at)};
-}
-
 // -1 in the lanes to trace.
 void set_valid(std::uint32_t active, std::int32_t* valid) {
     store(select(mask_of_bits(active), Int(-1), Int(0)), valid);
 }
 
-}  // namespace
-
-void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits& hits) {
-    RTCIntersectContext context = context_of(true);
+template <class Rays>
+void intersect(const CompiledScene& scene, const Rays& rays, std::uint64_t active, bool coherent, BeamHits& hits) {
+    RTCIntersectContext context = context_of(coherent);
     for (int at = 0; at < beam_rays; at += lanes) {
         const auto own = static_cast<std::uint32_t>(active >> at) & 0xffffu;
         Real t = load(rays.t_max + at);
         Int id = Int(-1);
-        nearest_planes(scene, rays.origin, directions(rays, at), load(rays.t_min + at), t, id);
+        nearest_planes(scene, origins(rays, at), directions(rays, at), load(rays.t_min + at), t, id);
         id = select(mask_of_bits(own), id, Int(-1));
         alignas(64) RTCRayHit16 packet;
         alignas(64) std::int32_t valid[lanes];
@@ -77,15 +80,16 @@ void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint6
     }
 }
 
-std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active) {
-    RTCIntersectContext context = context_of(true);
+template <class Rays>
+std::uint64_t occluded(const CompiledScene& scene, const Rays& rays, std::uint64_t active, bool coherent) {
+    RTCIntersectContext context = context_of(coherent);
     std::uint64_t blocked = 0;
     for (int at = 0; at < beam_rays; at += lanes) {
         auto own = static_cast<std::uint32_t>(active >> at) & 0xffffu;
         if (own == 0) continue;
         Real t = load(rays.t_max + at);
         Int id = Int(-1);
-        nearest_planes(scene, rays.origin, directions(rays, at), load(rays.t_min + at), t, id);
+        nearest_planes(scene, origins(rays, at), directions(rays, at), load(rays.t_min + at), t, id);
         std::uint32_t met = bits(id > Int(-1)) & own;
         own &= ~met;
         if (own != 0) {
@@ -101,50 +105,19 @@ std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, st
     return blocked;
 }
 
-RayHit intersect_ray(const CompiledScene& scene, const Ray& ray) {
-    Real t = Real(ray.t_max);
-    Int id = Int(-1);
-    nearest_planes(scene, ray.origin, splat3(ray.direction), Real(ray.t_min), t, id);
-    RTCIntersectContext context = context_of(false);
-    RTCRayHit one;
-    one.ray = {ray.origin[0],
-               ray.origin[1],
-               ray.origin[2],
-               ray.t_min,
-               ray.direction[0],
-               ray.direction[1],
-               ray.direction[2],
-               0,
-               lane(t, 0),
-               ~0u,
-               0,
-               0};
-    one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(embree_of(scene), &context, &one);
-    if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {lane(t, 0), 0, 0, lane(id, 0)};
-    return {one.ray.tfar, one.hit.u, one.hit.v, shape_id(scene, one.hit.geomID, one.hit.primID)};
-}
+}  // namespace
 
-bool occluded_ray(const CompiledScene& scene, const Ray& ray) {
-    Real t = Real(ray.t_max);
-    Int id = Int(-1);
-    nearest_planes(scene, ray.origin, splat3(ray.direction), Real(ray.t_min), t, id);
-    if (lane(id, 0) >= 0) return true;
-    RTCIntersectContext context = context_of(false);
-    RTCRay one = {ray.origin[0],
-                  ray.origin[1],
-                  ray.origin[2],
-                  ray.t_min,
-                  ray.direction[0],
-                  ray.direction[1],
-                  ray.direction[2],
-                  0,
-                  ray.t_max,
-                  ~0u,
-                  0,
-                  0};
-    rtcOccluded1(embree_of(scene), &context, &one);
-    return one.tfar < 0;
+void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits& hits) {
+    intersect(scene, rays, active, true, hits);
+}
+std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active) {
+    return occluded(scene, rays, active, true);
+}
+void intersect_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active, BeamHits& hits) {
+    intersect(scene, rays, active, false, hits);
+}
+std::uint64_t occluded_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active) {
+    return occluded(scene, rays, active, false);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -31,7 +31,7 @@ Measures Raywalk against Embree, tinyobjloader and assimp, and prints Markdown.
                  for a profiler to look at
   --isa NAME     the instruction set to use: avx512, avx2, sse4 or scalar
 
-Exit codes: 0 done, 1 contenders disagree about what was hit or the work failed, 2 wrong command line.
+Exit codes: 0 done, 1 a hit or a picture of ours is wrong or the work failed, 2 wrong command line.
 )";
 
 struct UsageError : std::runtime_error {
@@ -162,7 +162,7 @@ int run(Options options) {
     std::cout << "Measured on: " << machine << ".\n\n### Goals\n\n" << goals_table(goals) << text << std::flush;
     if (options.json) write_whole(*options.json, json.dump(2) + "\n");
     if (options.plot && !panels.empty()) write_whole(*options.plot, svg_of(panels, 3));
-    for (const std::string& problem : problems) std::fprintf(stderr, "DISAGREEMENT: %s\n", problem.c_str());
+    for (const std::string& problem : problems) std::fprintf(stderr, "WRONG: %s\n", problem.c_str());
     return problems.empty() ? 0 : 1;
 }
 

@@ -26,7 +26,7 @@ struct Findings {
     std::string markdown;
     nlohmann::json json;
     std::vector<Goal> goals;
-    std::vector<std::string> problems;  // disagreements, which fail the run
+    std::vector<std::string> problems;  // wrong answers, which fail the run
     std::vector<Panel> panels;
 };
 

@@ -95,7 +95,7 @@ RateRow measure_kind(const Geometry& geometry, const std::vector<EmbreeContender
     for (std::size_t a = 0; a < 2; ++a) {
         row.rate[a] = rate(1 + 2 * a);
         row.ratio[a] = ratio_of(times[embree], times[1 + 2 * a]);
-        row.agreement[a] = compare(set, hits[embree], hits[1 + 2 * a]);
+        row.agreement[a] = compare(geometry, set, hits[embree], hits[1 + 2 * a]);
     }
     return row;
 }

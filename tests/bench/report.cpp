@@ -98,14 +98,20 @@ std::vector<Goal> goals_of(const std::vector<RateRow>& rows) {
 }
 
 std::string rates_table(const std::vector<RateRow>& rows) {
-    std::vector<std::vector<std::string>> cells = {
-        {"scene", "rays", "best Embree call", "Embree", "kd-tree", "BVH", "kd-tree / Embree", "BVH / Embree", "goal"}};
+    std::vector<std::vector<std::string>> cells = {{"scene", "rays", "best Embree call", "Embree", "kd-tree", "BVH",
+                                                    "kd-tree / Embree", "BVH / Embree", "goal",
+                                                    "decided otherwise (wrong: ours, Embree)"}};
     std::string before;
     for (const RateRow& row : rows) {
+        const auto most = [&](std::size_t Agreement::*count) {
+            return std::to_string(std::max(row.agreement[0].*count, row.agreement[1].*count));
+        };
         cells.push_back({row.workload == before ? "" : row.workload, std::string(traits_of(row.kind).name),
                          row.best_embree, number(row.embree_rate * 1e-6, 1), number(row.rate[0] * 1e-6, 1),
                          number(row.rate[1] * 1e-6, 1), with_spread(row.ratio[0]), with_spread(row.ratio[1]),
-                         number(traits_of(row.kind).goal, 2)});
+                         number(traits_of(row.kind).goal, 2),
+                         most(&Agreement::different) + " (" + most(&Agreement::wrong) + ", " +
+                             most(&Agreement::theirs_wrong) + ")"});
         before = row.workload;
     }
     return table(cells);
@@ -124,7 +130,9 @@ nlohmann::json to_json(const std::vector<RateRow>& rows) {
             entry[a == 0 ? "kdtree" : "bvh"] = {{"rays_per_second", row.rate[a]},
                                                 {"ratio", row.ratio[a].median},
                                                 {"ratio_quartiles", {row.ratio[a].low, row.ratio[a].high}},
-                                                {"different_hits", row.agreement[a].different}};
+                                                {"different_hits", row.agreement[a].different},
+                                                {"wrong_hits", row.agreement[a].wrong},
+                                                {"wrong_hits_of_embree", row.agreement[a].theirs_wrong}};
         list.push_back(std::move(entry));
     }
     return list;

@@ -51,6 +51,9 @@ void scene(std::string_view input) {
         std::uint64_t points = 0;
         for (const Light& l : scene.lights) points += l.area ? static_cast<std::uint64_t>(l.area->n) * l.area->n : 1;
         require(points <= limits.light_points, "the budget of lights");
+        require(static_cast<std::uint64_t>(scene.viewer.width) * static_cast<std::uint64_t>(scene.viewer.height) <=
+                    limits.pixels,
+                "the budget of pixels");
     } catch (const InputError& error) {
         check_diagnostics(error.diagnostics(), input, limits);
     }

@@ -60,20 +60,29 @@ fault "counts in a walk script are passed over" app/walk_script.cpp \
     app_tests 'WalkScript.*'
 
 # Kernels: what rays hit.
-fault "triangles reach beyond their third edge" tracer/kernels/single_ray.h \
-    'r.u + r.v <= Real(1.0f + edge_slack)' 'r.u + r.v <= Real(1.1f)' \
+fault "triangles reach beyond their third edge" tracer/kernels/ray_shapes.h \
+    'r.u + r.v <= Real(1.0f) + slack' 'r.u + r.v <= Real(1.1f)' \
     traversal_tests '*FindsTheHitsThatALoop*'
-fault "no ray starts inside a sphere" tracer/kernels/single_ray.h \
-    'select(first > Real(ray.t_min), first, middle + half)' 'first' \
+fault "triangles leave gaps" tracer/kernels/ray_shapes.h \
+    'min(r.u, r.v) >= -slack' 'min(r.u, r.v) >= slack' \
+    traversal_tests '*LetsNoRayOutOfAClosedMesh*'
+fault "no ray starts inside a sphere" tracer/kernels/ray_shapes.h \
+    'select(first > t_min, first, middle + half)' 'first' \
     traversal_tests '*FindsTheHitsThatALoop*'
-fault "of equal hits the last counts" tracer/kernels/single_ray.h \
+fault "of equal hits the last counts" tracer/kernels/ray_shapes.h \
     'distance[l] == hit.t && id >= hit.id' 'distance[l] == hit.t && id == hit.id' \
     traversal_tests 'TraversalBits.*'
-fault "a group's rays do not widen its beam" tracer/kernels/beam.h \
-    'beam.u1 = std::max(beam.u1, group.u1)' 'beam.u1 = std::max(beam.u1, group.u0)' \
+fault "a beam is not as wide as its rays" tracer/kernels/beam.h \
+    'beam.u1 = reduce_max(u1)' 'beam.u1 = reduce_min(u1)' \
     traversal_tests '*FindsTheHitsThatALoop*'
-fault "beams end at the first hit of any ray" tracer/kernels/beam.h \
-    'least = min(least, beam.group[g].inverse_depth)' 'least = max(least, beam.group[g].inverse_depth)' \
+fault "beams end at the nearest hit of their rays" tracer/kernels/beam.h \
+    'max(depth, farthest), farthest)' 'min(depth, Real(9.0f)), farthest)' \
+    traversal_tests '*FindsTheHitsThatALoop*'
+fault "rays of a stream are lost with the last group" tracer/kernels/stream_traversal.h \
+    'g < beam_rays / lanes; ++g)' 'g < beam_rays / lanes - 1; ++g)' \
+    traversal_tests '*FindsTheHitsThatALoop*'
+fault "the farthest child of a stream comes first, and the rest never" tracer/kernels/stream_traversal.h \
+    'while (!stack.empty())' 'while (!stack.empty() && done == 0 && stack.size() < 2)' \
     traversal_tests '*FindsTheHitsThatALoop*'
 
 # Kernels: how it looks.

@@ -54,10 +54,12 @@ Ends open_terminal(int columns) {
         else
             setenv(variable.substr(0, equals).c_str(), variable.substr(equals + 1).c_str(), 1);
     }
-    if (process.memory_limit > 0) {
-        const rlimit limit{process.memory_limit, process.memory_limit};
-        setrlimit(RLIMIT_AS, &limit);
-    }
+    const auto set_limit = [](auto resource, std::size_t most) {
+        const rlimit limit{most, most};
+        if (most > 0) setrlimit(resource, &limit);
+    };
+    set_limit(RLIMIT_AS, process.memory_limit);
+    set_limit(RLIMIT_FSIZE, process.file_size_limit);
     if (chdir(process.folder.c_str()) != 0) _exit(126);
     std::vector<char*> words;
     for (const std::string& word : process.words) words.push_back(const_cast<char*>(word.c_str()));

@@ -17,6 +17,7 @@ struct Process {
     bool closed_output = false;
     int terminal_columns = 0;               // above 0: stderr is a terminal of this width
     std::size_t memory_limit = 0;           // bytes of address space; 0: none
+    std::size_t file_size_limit = 0;        // bytes of a file written; 0: none
     std::function<void(int)> started = {};  // called with the process id
 };
 

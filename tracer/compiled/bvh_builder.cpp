@@ -106,6 +106,9 @@ class Collapse {
         statistics_.inner_nodes += 1;
         statistics_.depth = std::max(statistics_.depth, depth);
         BvhNode node = empty_node();
+        // Should a ray of NaNs enter an empty slot, it finds a leaf there rather than its way back to the root.
+        std::fill(std::begin(node.child), std::end(node.child),
+                  BvhReference::leaf_of(triangles_.root.size() == 0, 0, 1).bits);
         auto next_child = static_cast<std::uint32_t>(nodes.size());
         std::vector<std::pair<std::uint32_t, Part>> inner;
         for (std::size_t slot = 0; slot < parts.size(); ++slot) {

@@ -144,9 +144,7 @@ void compile_mesh(const MeshSpan& span, std::int32_t surface, CompiledScene& com
         record.surface = surface;
     }
     if (!span.mesh->smooth) return;
-    const std::vector<VertexNormals> normals = corner_normals(*span.triangles);
-    std::copy(normals.begin(), normals.end(),
-              compiled.vertex_normals.begin() + static_cast<std::ptrdiff_t>(span.first));
+    corner_normals(*span.triangles, {compiled.vertex_normals.data() + span.first, faces.size()});
 }
 
 // Smooth meshes, flat meshes, faces: in this order, so that the smooth triangles are the first.
@@ -215,7 +213,7 @@ void compile_lights(const Scene& scene, const Limits& limits, CompiledScene& com
     for (const Light& light : scene.lights) compile_light(light, compiled);
 }
 
-void compile_images(const Scene& scene, const std::map<std::filesystem::path, Image>& files, CompiledScene& compiled) {
+void compile_images(const Scene& scene, std::map<std::filesystem::path, Image>& files, CompiledScene& compiled) {
     std::uint64_t texels = 0;
     for (const auto& [file, image] : files) texels += image.texels.size();
     // Texels are gathered by signed 32-bit indices.
@@ -225,9 +223,10 @@ void compile_images(const Scene& scene, const std::map<std::filesystem::path, Im
             "the images of this scene have " + std::to_string(texels) + " pixels together, more than 2147483647",
             "use smaller images"));
     compiled.texels.reserve(texels);
-    for (const auto& [file, image] : files) {
+    for (auto& [file, image] : files) {
         compiled.images.push_back({static_cast<std::uint32_t>(compiled.texels.size()), image.width, image.height});
         compiled.texels.insert(compiled.texels.end(), image.texels.begin(), image.texels.end());
+        image = {};  // so that most are held once only
     }
     // Gathers of lanes without an image read the first texel of the first one.
     if (compiled.images.empty()) compiled.images.emplace_back();
@@ -262,7 +261,7 @@ CompiledScene compile(const Scene& scene, const CompileOptions& options, const L
                                                                         : build_bvh(shapes, &build);
     }
 
-    const SceneFiles<Image> images = images_to_come.get();
+    SceneFiles<Image> images = images_to_come.get();
     warnings.insert(warnings.end(), images.warnings.begin(), images.warnings.end());
     std::vector<Diagnostic> errors = std::move(meshes.errors);
     errors.insert(errors.end(), images.errors.begin(), images.errors.end());

@@ -30,9 +30,27 @@ glm::dvec3 vertex_mean(const TriangleMesh& mesh) {
 }
 
 double farthest_from(const TriangleMesh& mesh, const glm::dvec3& point) {
-    double farthest = 0;
-    for (const glm::vec3& p : mesh.positions) farthest = std::max(farthest, glm::length(glm::dvec3(p) - point));
-    return farthest;
+    double farthest = 0;  // squared
+#pragma omp parallel for schedule(static) reduction(max : farthest) if (mesh.positions.size() >= worth_threads)
+    for (const glm::vec3& p : mesh.positions) {
+        const glm::dvec3 apart = glm::dvec3(p) - point;
+        farthest = std::max(farthest, glm::dot(apart, apart));
+    }
+    return std::sqrt(farthest);
+}
+
+// Of each vertex, the mean of the unit normals of the faces around it as a unit vector; zero where it has no direction.
+std::vector<glm::dvec3> vertex_directions(const TriangleMesh& mesh, const std::vector<glm::dvec3>& face_normals) {
+    // In the order of the faces, on one thread: the same sums for any number of threads.
+    std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        for (const std::uint32_t vertex : mesh.faces[f]) sums[vertex] += face_normals[f];
+#pragma omp parallel for schedule(static) if (sums.size() >= worth_threads)
+    for (glm::dvec3& sum : sums) {
+        // Opposite faces cancel but for rounding: such a mean has no direction worth the name.
+        sum = glm::length(sum) > 1e-9 ? direction_of(sum) : glm::dvec3(0);
+    }
+    return sums;
 }
 
 }  // namespace
@@ -55,7 +73,7 @@ std::vector<glm::vec3> placed_positions(const TriangleMesh& mesh, const glm::dve
     return placed;
 }
 
-std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh) {
+void corner_normals(const TriangleMesh& mesh, std::span<VertexNormals> normals) {
     const std::size_t faces = mesh.faces.size();
     std::vector<glm::dvec3> face_normals(faces);
 #pragma omp parallel for schedule(static) if (faces >= worth_threads)
@@ -63,26 +81,24 @@ std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh) {
         const auto& [a, b, c] = mesh.faces[f];
         face_normals[f] = face_direction(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
     }
-    // In the order of the faces, on one thread: the same sums for any number of threads.
-    std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
-    for (std::size_t f = 0; f < faces; ++f)
-        for (const std::uint32_t vertex : mesh.faces[f]) sums[vertex] += face_normals[f];
-
-    std::vector<VertexNormals> normals(faces);
+    const std::vector<glm::dvec3> of_vertex = vertex_directions(mesh, face_normals);
 #pragma omp parallel for schedule(static) if (faces >= worth_threads)
     for (std::size_t f = 0; f < faces; ++f)
         for (std::size_t corner = 0; corner < 3; ++corner) {
             glm::dvec3 n(0);
             if (!mesh.normal_faces.empty() && mesh.normal_faces[f][corner] >= 0)
                 n = direction_of(mesh.normals[static_cast<std::size_t>(mesh.normal_faces[f][corner])]);
-            // Opposite faces cancel but for rounding: such a mean has no direction worth the name.
-            if (n == glm::dvec3(0) && glm::length(sums[mesh.faces[f][corner]]) > 1e-9)
-                n = direction_of(sums[mesh.faces[f][corner]]);
+            if (n == glm::dvec3(0)) n = of_vertex[mesh.faces[f][corner]];
             if (n == glm::dvec3(0)) n = face_normals[f];
             if (n == glm::dvec3(0)) n = {0, 0, 1};
             for (int axis = 0; axis < 3; ++axis)
                 normals[f].n[3 * corner + static_cast<std::size_t>(axis)] = static_cast<float>(n[axis]);
         }
+}
+
+std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh) {
+    std::vector<VertexNormals> normals(mesh.faces.size());
+    corner_normals(mesh, normals);
     return normals;
 }
 

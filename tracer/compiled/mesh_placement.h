@@ -1,6 +1,7 @@
 // From a mesh as its file has it to triangles where the scene wants them (spec 3, Mesh).
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ std::vector<glm::vec3> placed_positions(const TriangleMesh& mesh, const glm::dve
 // Unit normals of each face's three corners: the file's own where it has them, else the unweighted mean of the unit
 // normals of the faces around the vertex, else (a mean of zero) the face's own.
 std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh);
+void corner_normals(const TriangleMesh& mesh, std::span<VertexNormals> normals);  // one per face
 
 // Unit normal by the order a, b, c; some unit vector for a triangle without area, which no ray hits.
 glm::vec3 geometric_normal(const TriangleCorners& triangle);

@@ -24,6 +24,13 @@ std::map<std::filesystem::path, SourceLocation> image_files(const Scene& scene) 
     return files;
 }
 
+// `pixels` of all images so far, of which the latest has `own`. Throws where that breaks the budget.
+void require_budget(std::uint64_t pixels, std::uint64_t own, const Limits& limits, const SourceLocation& where) {
+    if (pixels <= limits.all_image_pixels || pixels - own > limits.all_image_pixels) return;
+    throw InputError(error_at(where, "with this image the scene's images have " + std::to_string(pixels) + " pixels",
+                              how_to_raise(limits, &Limits::all_image_pixels)));
+}
+
 }  // namespace
 
 std::vector<const Texture*> textures_of(const Scene& scene) {
@@ -44,9 +51,9 @@ SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits) {
             try {
                 TriangleMesh triangle_mesh = read_obj(mesh.file, limits, read.warnings, mesh.where);
                 if (const std::string problem = placement_problem(triangle_mesh); !problem.empty())
-                    throw InputError(error_at(mesh.where,
-                                              "mesh '" + mesh.file.string() + "' cannot be placed: " + problem,
-                                              "a mesh needs a face and two different vertices"));
+                    throw InputError(error_at(
+                        mesh.where, "mesh " + quoted_name(mesh.file.string()) + " cannot be placed: " + problem,
+                        "a mesh needs a face and two different vertices"));
                 read.files.emplace(mesh.file, std::move(triangle_mesh));
             } catch (const InputError& error) {
                 append(read.errors, error.diagnostics());
@@ -77,9 +84,15 @@ SceneFiles<Image> read_images(const Scene& scene, const Limits& limits) {
     std::vector<std::promise<Image>> promises(wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) images[i] = promises[i].get_future();
     std::atomic<std::size_t> next = 0;
+    std::atomic<std::uint64_t> pixels = 0;
     const auto work = [&] {
         for (std::size_t i = next++; i < wanted.size(); i = next++) try {
-                promises[i].set_value(read_image(wanted[i].first, limits, wanted[i].second));
+                Image image;  // none is read where the budget is spent, and that one was too many is said once
+                if (pixels <= limits.all_image_pixels) {
+                    image = read_image(wanted[i].first, limits, wanted[i].second);
+                    require_budget(pixels += image.texels.size(), image.texels.size(), limits, wanted[i].second);
+                }
+                promises[i].set_value(std::move(image));
             } catch (...) {
                 promises[i].set_exception(std::current_exception());
             }
@@ -96,11 +109,11 @@ SceneFiles<Image> read_images(const Scene& scene, const Limits& limits) {
         try {
             Image image = images[i].get();
             if (image.width != image.height)
-                read.warnings.push_back(warning_at(where,
-                                                   "image '" + file.string() + "' is " + std::to_string(image.width) +
-                                                       " x " + std::to_string(image.height) +
-                                                       " pixels and is stretched over a square",
-                                                   "a square image keeps its shape"));
+                read.warnings.push_back(
+                    warning_at(where,
+                               "image " + quoted_name(file.string()) + " is " + std::to_string(image.width) + " x " +
+                                   std::to_string(image.height) + " pixels and is stretched over a square",
+                               "a square image keeps its shape"));
             read.files.emplace(file, std::move(image));
         } catch (const InputError& error) {
             append(read.errors, error.diagnostics());

@@ -80,7 +80,8 @@ std::vector<std::uint8_t> display_bytes(const FloatImage& image) {
 
 const Extension& require_extension(const fs::path& file) {
     if (const Extension* extension = extension_of(file)) return *extension;
-    throw WorkError("cannot write '" + file.string() + "': its extension is none of .png .jpg .exr .pfm .hdr .tif");
+    throw WorkError("cannot write " + quoted_name(file.string()) +
+                    ": its extension is none of .png .jpg .exr .pfm .hdr .tif");
 }
 
 constexpr const char* readable_formats = "expected a PNG, JPEG, TIFF, EXR or HDR file";
@@ -104,11 +105,9 @@ ImageBudget budget_for(std::uint64_t pixels, std::uint64_t file_bytes) {
 
 ImageResult decode(ImageFormat format, std::string_view bytes, const fs::path& file, const SourceLocation& where,
                    std::uint64_t most_pixels) {
-    try {
-        return decode_in_process(format, bytes, budget_for(most_pixels, bytes.size()));
-    } catch (const WorkError& error) {
-        throw refusal(file, where, std::string("cannot be read: ") + error.what(), other_image);
-    }
+    ImageResult result = decode_in_process(format, bytes, budget_for(most_pixels, bytes.size()));
+    if (!result.end.empty()) throw refusal(file, where, "cannot be read: " + result.end, other_image);
+    return result;
 }
 
 // The picture of a reply that says it is done, if its size bears that out.
@@ -134,13 +133,14 @@ void encode_and_write(const fs::path& file, ImageFormat format, int width, int h
     std::string problem;
     try {
         const ImageResult result = encode_in_process(format, width, height, floats, rgb);
-        if (result.reply.status == ImageReply::done) return write_whole(file, result.body());
-        problem = printable(result.body());
+        const bool replied = result.end.empty();
+        if (replied && result.reply.status == ImageReply::done) return write_whole(file, result.body());
+        problem = replied ? printable(result.body()) : result.end;
     } catch (const WorkError& error) {
         problem = error.what();
         if (problem.starts_with("cannot write")) throw;
     }
-    throw WorkError("cannot write '" + file.string() + "': " + problem);
+    throw WorkError("cannot write " + quoted_name(file.string()) + ": " + problem);
 }
 
 }  // namespace

@@ -66,6 +66,17 @@ fs::path helper_program(ImageFormat format) {
     throw WorkError("the program " + name + " is neither in " + here.string() + " nor in ../lib/raywalk from there");
 }
 
+// What somebody's other programs want of OpenImageIO (a thousand threads, say) would break the helper's budget.
+std::vector<char*> without_settings_of_codecs(char** variables) {
+    std::vector<char*> kept;
+    for (; *variables != nullptr; ++variables) {
+        const std::string_view variable = *variables;
+        if (!variable.starts_with("OPENIMAGEIO") && !variable.starts_with("OIIO")) kept.push_back(*variables);
+    }
+    kept.push_back(nullptr);
+    return kept;
+}
+
 // Starts the helper with `input` and `output` as its first two files and silence as its third: what libraries print is
 // no message of ours. In a process group of its own, so that Ctrl-C does not reach it while a picture is saved.
 pid_t start(const fs::path& program, std::vector<std::string>& arguments, int input, int output) {
@@ -87,8 +98,9 @@ pid_t start(const fs::path& program, std::vector<std::string>& arguments, int in
     words.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) words.push_back(argument.data());
     words.push_back(nullptr);
+    std::vector<char*> variables = without_settings_of_codecs(environ);
     pid_t pid = 0;
-    const int error = posix_spawn(&pid, program.c_str(), &files, &attributes, words.data(), environ);
+    const int error = posix_spawn(&pid, program.c_str(), &files, &attributes, words.data(), variables.data());
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
     if (error != 0) fail("'" + program.string() + "' cannot be run", error);
@@ -105,7 +117,7 @@ std::string end_of(pid_t pid) {
     if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
         return "it takes too much time or memory";
     if (WIFSIGNALED(status)) return std::string("its decoder broke (") + strsignal(WTERMSIG(status)) + ")";
-    if (WEXITSTATUS(status) == 127) return "its decoder cannot be started; are its libraries installed?";
+    if (WEXITSTATUS(status) == 127) throw WorkError("a decoder of images cannot start; are its libraries installed?");
     return WEXITSTATUS(status) == 0 ? "" : "its decoder gave up";
 }
 
@@ -115,12 +127,11 @@ ImageResult run(ImageFormat format, std::vector<std::string> arguments, std::str
     arguments.insert(arguments.begin(), program.string());
     const MemoryFile given("raywalk-image-in"), got("raywalk-image-out");
     given.fill(input);
-    const std::string end = end_of(start(program, arguments, given.descriptor(), got.descriptor()));
-    ImageResult result{{}, got.content()};
+    std::string end = end_of(start(program, arguments, given.descriptor(), got.descriptor()));
+    ImageResult result{{}, got.content(), std::move(end)};
     if (result.output.text().size() >= sizeof(ImageReply))
         std::memcpy(&result.reply, result.output.text().data(), sizeof(ImageReply));
-    if (!end.empty() || result.reply.magic != ImageReply::magic_number)
-        throw WorkError(end.empty() ? "its decoder said nothing" : end);
+    if (result.end.empty() && result.reply.magic != ImageReply::magic_number) result.end = "its decoder said nothing";
     return result;
 }
 

@@ -38,10 +38,11 @@ struct ImageReply {
 struct ImageResult {
     ImageReply reply;  // magic checked, nothing else: a decoder that was taken over can say anything
     FileBytes output;  // the reply included
+    std::string end;   // how the helper ended, when it broke over this picture: there is no reply then
     [[nodiscard]] std::string_view body() const { return output.text().substr(sizeof(ImageReply)); }
 };
 
-// Runs the helper on `input`. Throws WorkError when it cannot be run or ends without a reply, with the reason.
+// Runs the helper on `input`. Throws WorkError when it cannot be run, which is no fault of the picture.
 ImageResult decode_in_process(ImageFormat format, std::string_view input, const ImageBudget& budget);
 ImageResult encode_in_process(ImageFormat format, int width, int height, bool floats, std::string_view input);
 

@@ -10,15 +10,17 @@
 namespace raywalk {
 
 struct Limits {
-    std::uint64_t scene_bytes = 64ull << 20;     // a scene file
-    std::uint64_t mesh_bytes = 4ull << 30;       // an OBJ file
-    std::uint64_t triangles = 100'000'000;       // of all meshes together, after triangulation
-    std::uint64_t light_points = 65'536;         // of all lights together: area n counts n * n
-    std::uint64_t samples = 65'536;              // per pixel: dop count x anti count
-    std::uint64_t image_bytes = 1ull << 30;      // an image file
-    std::uint64_t image_pixels = 64ull << 20;    // of one texture
-    std::uint64_t image_pixels_per_byte = 2048;  // a small file that promises more is no picture (see read_image)
-    std::uint64_t errors = 20;                   // reported before giving up
+    std::uint64_t scene_bytes = 64ull << 20;        // a scene file
+    std::uint64_t mesh_bytes = 4ull << 30;          // an OBJ file
+    std::uint64_t triangles = 100'000'000;          // of all meshes together, after triangulation
+    std::uint64_t pixels = 16ull << 20;             // of the picture: geo WIDTH x HEIGHT
+    std::uint64_t light_points = 65'536;            // of all lights together: area n counts n * n
+    std::uint64_t samples = 65'536;                 // per pixel: dop count x anti count
+    std::uint64_t image_bytes = 1ull << 30;         // an image file
+    std::uint64_t image_pixels = 64ull << 20;       // of one texture
+    std::uint64_t all_image_pixels = 256ull << 20;  // of all textures together
+    std::uint64_t image_pixels_per_byte = 2048;     // a small file that promises more is no picture (see read_image)
+    std::uint64_t errors = 20;                      // reported before giving up
     std::vector<std::filesystem::path> allowed_folders;  // beside the parent of the scene's folder
 };
 
@@ -33,10 +35,12 @@ inline constexpr LimitOption limit_options[] = {
     {"--max-scene-bytes", &Limits::scene_bytes, "bytes of a scene file"},
     {"--max-mesh-bytes", &Limits::mesh_bytes, "bytes of an OBJ file"},
     {"--max-triangles", &Limits::triangles, "triangles of all meshes together"},
+    {"--max-pixels", &Limits::pixels, "pixels of the picture that geo asks for (those of --size are not limited)"},
     {"--max-light-points", &Limits::light_points, "points of all lights together (area n is n x n of them)"},
     {"--max-samples", &Limits::samples, "samples per pixel (dop count x anti count)"},
     {"--max-image-bytes", &Limits::image_bytes, "bytes of an image file"},
     {"--max-image-pixels", &Limits::image_pixels, "pixels of one texture"},
+    {"--max-all-image-pixels", &Limits::all_image_pixels, "pixels of all textures together"},
     {"--max-image-pixels-per-byte", &Limits::image_pixels_per_byte,
      "pixels that one byte of an image file may promise"},
     {"--max-errors", &Limits::errors, "mistakes reported before giving up"},

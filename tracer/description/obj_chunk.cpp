@@ -7,6 +7,7 @@
 #include <cstring>
 #include <iterator>
 
+#include "tracer/description/decimal.h"
 #include "tracer/ground/error.h"
 
 namespace raywalk {
@@ -21,17 +22,16 @@ constexpr std::string_view ignored_words[] = {
     "ctech", "stech",    "shadow_obj", "cdp",    "cdc",    "res",  "bsp",  "bzp",
 };
 
-constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
-constexpr bool ends_word(char c) { return is_blank(c) || c == '\n'; }
-
-// Powers of ten that single precision holds exactly.
-constexpr float powers_of_ten[] = {1e0f, 1e1f, 1e2f, 1e3f, 1e4f, 1e5f, 1e6f, 1e7f, 1e8f, 1e9f, 1e10f};
+// Most characters that are asked are above the blanks: one comparison tells.
+constexpr bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && (c == ' ' || c == '\t' || c == '\r'); }
+constexpr bool ends_word(char c) { return static_cast<unsigned char>(c) <= ' ' && (is_blank(c) || c == '\n'); }
 
 class ChunkParser {
   public:
-    ChunkParser(std::string_view text, std::uint64_t most_faces, std::uint64_t most_errors)
-        : p_(text.data()),
+    // `into` is empty.
+    ChunkParser(std::string_view text, std::uint64_t most_faces, std::uint64_t most_errors, ObjChunk& into)
+        : out_(into),
+          p_(text.data()),
           end_(text.data() + text.size()),
           line_start_(p_),
           most_faces_(most_faces),
@@ -41,8 +41,6 @@ class ChunkParser {
         while (p_ < end_ && out_.faces.size() <= most_faces_ && out_.errors.size() < most_errors_) parse_line();
     }
     ObjRemark locate(std::size_t face, int corner, bool normal);
-
-    ObjChunk out_;
 
   private:
     struct Corner {
@@ -54,11 +52,14 @@ class ChunkParser {
     void parse_normal();
     void parse_face();
     void parse_other();
+    bool parse_coordinates(glm::vec3& v, const char* form);
     bool parse_number(float& value, const char* name, const char* form);
-    bool parse_number_slowly(float& value, const char* name, const char* form);
+    static const char* read_plain_corner(const char* p, Corner& corner);
+    bool parse_plain_triangle();
     bool parse_corner(Corner& corner);
     bool parse_index(std::uint32_t& index, std::size_t count, const char* list);
-    void add_faces();
+    void add_normal(glm::vec3 n);
+    void add_face(const Corner& a, const Corner& b, const Corner& c);
 
     // Passes blanks and continued line ends.
     void skip_blanks() {
@@ -82,11 +83,11 @@ class ChunkParser {
     }
     ObjRemark remark(const char* at, std::string what, std::string expected) const;
 
+    ObjChunk& out_;
     const char* p_;
     const char* end_;         // a newline stands there
     const char* line_start_;  // of the line that p_ is in
     std::uint64_t most_faces_, most_errors_;
-    std::vector<Corner> corners_;  // of the polygon being read
 };
 
 std::string_view word_at(const char* at, const char* end) {
@@ -138,32 +139,27 @@ void ChunkParser::parse_line() {
     ++out_.lines;
 }
 
-// Reads the number at p_. Digits that single precision holds exactly, times or by a power of ten that it holds
-// exactly, need one rounding only (Clinger 1990); all others go the slow way.
-inline bool ChunkParser::parse_number(float& value, const char* name, const char* form) {
-    skip_blanks();
+// Reads three numbers, with p_ in a register between those that are written as most are.
+inline bool ChunkParser::parse_coordinates(glm::vec3& v, const char* form) {
+    constexpr const char* names[] = {"x", "y", "z"};
     const char* p = p_;
-    const bool negative = *p == '-';
-    if (negative || *p == '+') ++p;
-    const char* begin = p;
-    std::uint64_t digits = 0;
-    while (is_digit(*p)) digits = digits * 10 + static_cast<std::uint64_t>(*p++ - '0');
-    std::ptrdiff_t count = p - begin, decimals = 0;
-    if (*p == '.') {
-        const char* point = p++;
-        while (is_digit(*p)) digits = digits * 10 + static_cast<std::uint64_t>(*p++ - '0');
-        decimals = p - point - 1;
-        count += decimals;
+    for (int axis = 0; axis < 3; ++axis) {
+        while (is_blank(*p)) ++p;
+        const char* after = read_decimal(p, v[axis]);
+        if (after != nullptr && ends_word(*after)) {
+            p = after;
+            continue;
+        }
+        p_ = p;
+        if (!parse_number(v[axis], names[axis], form)) return false;
+        p = p_;
     }
-    if (!ends_word(*p) || count == 0 || count > 18 || decimals > 10 || digits > (1u << 24))
-        return parse_number_slowly(value, name, form);
-    const float magnitude = static_cast<float>(digits) / powers_of_ten[decimals];
-    value = negative ? -magnitude : magnitude;
     p_ = p;
     return true;
 }
 
-bool ChunkParser::parse_number_slowly(float& value, const char* name, const char* form) {
+bool ChunkParser::parse_number(float& value, const char* name, const char* form) {
+    skip_blanks();
     const std::string_view word = word_at(p_, end_);
     if (word.empty()) {
         fail(p_, std::string(name) + " is missing", std::string("expected: ") + form);
@@ -191,7 +187,7 @@ void ChunkParser::parse_vertex() {
     constexpr const char* form = "v X Y Z";
     ++p_;
     glm::vec3 v;
-    if (!parse_number(v.x, "x", form) || !parse_number(v.y, "y", form) || !parse_number(v.z, "z", form)) return;
+    if (!parse_coordinates(v, form)) return;
     skip_blanks();
     float ignored = 0;  // a weight, or a colour
     for (int more = 0; *p_ != '\n'; ++more, skip_blanks()) {
@@ -205,14 +201,25 @@ void ChunkParser::parse_normal() {
     constexpr const char* form = "vn X Y Z";
     p_ += 2;
     glm::vec3 n;
-    if (!parse_number(n.x, "x", form) || !parse_number(n.y, "y", form) || !parse_number(n.z, "z", form)) return;
+    if (!parse_coordinates(n, form)) return;
     skip_blanks();
     if (*p_ != '\n') return fail(p_, "unexpected " + quoted(word_at(p_, end_)), std::string("expected: ") + form);
+    add_normal(n);
+}
+
+// One whose square would leave single precision is brought to a length near 1.
+inline void ChunkParser::add_normal(glm::vec3 n) {
+    constexpr float small = 1e-15f, large = 1e15f;
+    const float largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+    if (largest == 0)
+        ++out_.empty_normals;
+    else if (!(largest >= small && largest <= large))
+        n = glm::vec3(glm::dvec3(n) / static_cast<double>(largest));
     out_.normals.push_back(n);
 }
 
 // Reads a whole number at p_ as an index into a list of which `count` entries came before in this chunk.
-inline bool ChunkParser::parse_index(std::uint32_t& index, std::size_t count, const char* list) {
+bool ChunkParser::parse_index(std::uint32_t& index, std::size_t count, const char* list) {
     const char* begin = p_;
     const bool negative = *begin == '-';
     const char* digits = begin + negative;
@@ -241,7 +248,22 @@ inline bool ChunkParser::parse_index(std::uint32_t& index, std::size_t count, co
     return true;
 }
 
-inline bool ChunkParser::parse_corner(Corner& corner) {
+// The corner at p, and where it ends, if it is written with positive indices of few digits; nullptr otherwise.
+inline const char* ChunkParser::read_plain_corner(const char* p, Corner& corner) {
+    std::uint32_t position = 0, texture = 1, normal = no_index + 1;
+    p = read_short_whole(p, position);
+    if (p == nullptr) return nullptr;
+    if (*p == '/') {
+        ++p;
+        if (*p != '/' && (p = read_short_whole(p, texture)) == nullptr) return nullptr;
+        if (*p == '/' && ((p = read_short_whole(p + 1, normal)) == nullptr || normal == 0)) return nullptr;
+    }
+    if (position == 0 || texture == 0) return nullptr;
+    corner = {position - 1, normal - 1};
+    return p;
+}
+
+bool ChunkParser::parse_corner(Corner& corner) {
     corner.normal = no_index;
     if (!parse_index(corner.position, out_.positions.size(), "vertices")) return false;
     if (*p_ == '/') {
@@ -260,35 +282,53 @@ inline bool ChunkParser::parse_corner(Corner& corner) {
     return false;
 }
 
-void ChunkParser::parse_face() {
-    const char* keyword = p_;
-    const char* first_line = line_start_;
-    ++p_;
-    corners_.clear();
-    for (skip_blanks(); *p_ != '\n'; skip_blanks()) {
-        Corner corner;
-        if (!parse_corner(corner)) return;
-        corners_.push_back(corner);
-        if (corners_.size() > 2 && corners_.size() - 2 > most_faces_) break;  // over the budget already
+// Reads what most lines of most files are: three such corners with a blank before each and nothing behind.
+inline bool ChunkParser::parse_plain_triangle() {
+    Corner corners[3];
+    const char* p = p_ + 1;
+    for (Corner& corner : corners) {
+        if (*p != ' ' || (p = read_plain_corner(p + 1, corner)) == nullptr) return false;
     }
-    if (corners_.size() < 3)
-        return fail(line_start_ == first_line ? keyword : line_start_,
-                    "a face of " + std::to_string(corners_.size()) + (corners_.size() == 1 ? " corner" : " corners"),
-                    "expected three corners or more");
-    add_faces();
+    if (*p != '\n') return false;
+    add_face(corners[0], corners[1], corners[2]);
+    p_ = p;
+    return true;
 }
 
-// The polygon as a fan from its first corner.
-void ChunkParser::add_faces() {
-    const Corner& a = corners_[0];
-    for (std::size_t i = 2; i < corners_.size(); ++i) {
-        const Corner &b = corners_[i - 1], &c = corners_[i];
-        out_.faces.push_back({a.position, b.position, c.position});
-        const bool plain = (a.normal & b.normal & c.normal) == no_index;
-        if (plain && out_.normal_faces.empty()) continue;
-        out_.normal_faces.resize(out_.faces.size() - 1, {no_index, no_index, no_index});
-        out_.normal_faces.push_back({a.normal, b.normal, c.normal});
+// A polygon, as a fan from its first corner.
+void ChunkParser::parse_face() {
+    if (parse_plain_triangle()) return;
+    const char* keyword = p_;
+    const char* first_line = line_start_;
+    const std::size_t faces_before = out_.faces.size();
+    Corner first{}, previous{};
+    std::size_t count = 0;
+    for (++p_, skip_blanks(); *p_ != '\n'; skip_blanks()) {
+        Corner corner{};
+        if (const char* after = read_plain_corner(p_, corner); after != nullptr && ends_word(*after)) {
+            p_ = after;
+        } else if (!parse_corner(corner)) {
+            out_.faces.resize(faces_before);
+            out_.normal_faces.resize(std::min(out_.normal_faces.size(), faces_before));
+            return;
+        }
+        if (count == 0) first = corner;
+        if (count >= 2) add_face(first, previous, corner);
+        previous = corner;
+        if (++count > 2 && count - 2 > most_faces_) break;  // over the budget already
     }
+    if (count < 3)
+        fail(line_start_ == first_line ? keyword : line_start_,
+             "a face of " + std::to_string(count) + (count == 1 ? " corner" : " corners"),
+             "expected three corners or more");
+}
+
+inline void ChunkParser::add_face(const Corner& a, const Corner& b, const Corner& c) {
+    out_.faces.push_back({a.position, b.position, c.position});
+    const bool plain = (a.normal & b.normal & c.normal) == no_index;
+    if (plain && out_.normal_faces.empty()) return;
+    out_.normal_faces.resize(out_.faces.size() - 1, {no_index, no_index, no_index});
+    out_.normal_faces.push_back({a.normal, b.normal, c.normal});
 }
 
 void ChunkParser::parse_other() {
@@ -332,14 +372,24 @@ ObjRemark ChunkParser::locate(std::size_t face, int corner, bool normal) {
 
 }  // namespace
 
-ObjChunk parse_obj_chunk(std::string_view text, std::uint64_t most_faces, std::uint64_t most_errors) {
-    ChunkParser parser(text, most_faces, most_errors);
-    parser.parse();
-    return std::move(parser.out_);
+void ObjChunk::clear() {
+    positions.clear();
+    normals.clear();
+    faces.clear();
+    normal_faces.clear();
+    lines = empty_normals = 0;
+    errors.clear();
+    unknown_words.clear();
+}
+
+void parse_obj_chunk(std::string_view text, std::uint64_t most_faces, std::uint64_t most_errors, ObjChunk& into) {
+    into.clear();
+    ChunkParser(text, most_faces, most_errors, into).parse();
 }
 
 ObjRemark locate_obj_corner(std::string_view text, std::size_t face, int corner, bool normal) {
-    return ChunkParser(text, ~std::uint64_t{0}, ~std::uint64_t{0}).locate(face, corner, normal);
+    ObjChunk chunk;
+    return ChunkParser(text, ~std::uint64_t{0}, ~std::uint64_t{0}, chunk).locate(face, corner, normal);
 }
 
 }  // namespace raywalk

@@ -27,17 +27,21 @@ struct ObjRemark {
 };
 
 struct ObjChunk {
-    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;  // of lengths whose squares single precision holds, or 0
     std::vector<std::array<std::uint32_t, 3>> faces;
     std::vector<std::array<std::uint32_t, 3>> normal_faces;  // empty, or one per face; no_index where a corner has none
     std::size_t lines = 0;
+    std::size_t empty_normals = 0;  // normals of length 0
     std::vector<ObjRemark> errors;
     std::vector<ObjRemark> unknown_words;  // the first, if any
+
+    void clear();  // the lists keep their memory for the next chunk
 };
 
-// Parses whole lines. At least one newline must follow `text` in memory. Stops after `most_errors` errors or more than
-// `most_faces` faces.
-ObjChunk parse_obj_chunk(std::string_view text, std::uint64_t most_faces, std::uint64_t most_errors);
+// Parses whole lines into `into`, whose memory is used again. The newlines of FileBytes must follow the last text in
+// memory. Stops after `most_errors` errors or more than `most_faces` faces.
+void parse_obj_chunk(std::string_view text, std::uint64_t most_faces, std::uint64_t most_errors, ObjChunk& into);
 
 // Where corner 0..2 of triangle number `face` of a chunk stands; of its `normal`, if so asked.
 ObjRemark locate_obj_corner(std::string_view text, std::size_t face, int corner, bool normal);

@@ -36,7 +36,7 @@ struct GridTexture {
 struct ImageTexture {
     std::filesystem::path file;  // resolved against the scene's folder
     int size = 4;                // side of one tile in units of u and v
-    SourceLocation where;        // of the file name, for errors found when the image is read
+    SourceLocation where = {};   // of the file name, for errors found when the image is read
 };
 
 struct Texture {
@@ -92,7 +92,7 @@ struct Face {
 struct Mesh {
     Texture texture;
     std::filesystem::path file;  // resolved against the scene's folder
-    SourceLocation where;        // of the file name
+    SourceLocation where = {};   // of the file name
     glm::dvec3 center{0};        // the vertex mean is moved here
     double radius = 1;           // and the farthest vertex scaled to this distance from it
     bool smooth = false;

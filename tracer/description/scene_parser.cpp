@@ -268,6 +268,11 @@ void Parser::read_viewer() {
         const auto same = [&](const auto& p) { return p.name == property; };
         return seen[std::ranges::find_if(viewer_properties, same) - std::begin(viewer_properties)];
     };
+    if (const std::uint64_t pixels =
+            static_cast<std::uint64_t>(viewer.width) * static_cast<std::uint64_t>(viewer.height);
+        pixels > limits_.pixels)
+        report_.error(place("geo"), "the picture has " + std::to_string(pixels) + " pixels: too many",
+                      how_to_raise(limits_, &Limits::pixels));
     const auto view = direction(viewer.target - viewer.center);
     const auto up = direction(viewer.up);
     // Below a millionth of a radian the rounding of the inputs decides which way is up.
@@ -394,7 +399,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file, cons
 
 Scene read_scene(const std::filesystem::path& file, const Limits& limits, std::vector<Diagnostic>& warnings) {
     try {
-        const FileBytes bytes = read_file_bytes(file, limits.scene_bytes);
+        const FileBytes bytes = read_text_bytes(file, limits.scene_bytes);
         return parse_scene(bytes.text(), file, limits, warnings);
     } catch (const FileProblem& problem) {
         const std::string advice = problem.too_large ? how_to_raise(limits, &Limits::scene_bytes)

@@ -1,5 +1,8 @@
 // Where mistakes of a scene go, and which files a scene may name.
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <climits>
 #include <system_error>
 #include <utility>
 
@@ -60,8 +63,10 @@ const NamedFiles::Found& NamedFiles::find(std::string_view name) {
     return seen_.emplace(name, look(name)).first->second;
 }
 
-NamedFiles::Found NamedFiles::look(std::string_view name) const {
+NamedFiles::Found NamedFiles::look(std::string_view name) {
     if (name.empty()) return {{}, "is no file name", "expected the name of a file"};
+    if (name.size() >= PATH_MAX)
+        return {{}, "is too long for the name of a file", "at most " + std::to_string(PATH_MAX - 1) + " bytes"};
     const std::filesystem::path path = folder_ / std::filesystem::path(name);
     std::error_code error;
     const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
@@ -75,7 +80,9 @@ NamedFiles::Found NamedFiles::look(std::string_view name) const {
     if (std::string problem = file_problem(path); !problem.empty())
         return {path, std::move(problem), "a path is relative to the scene's folder"};
     if (std::filesystem::equivalent(path, scene_, error)) return {path, "is this scene itself", "name another file"};
-    return {path, {}, {}};
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) return {path, {}, {}};  // gone again; its reader will say so
+    return {first_names_.emplace(Identity{status.st_dev, status.st_ino}, path).first->second, {}, {}};
 }
 
 }  // namespace raywalk

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tracer/description/limits.h"
@@ -50,7 +51,7 @@ class SceneReport {
 };
 
 // Files that a scene names: found from the scene's folder, kept inside the parent of that folder (links followed) or
-// an allowed folder, and looked at once each.
+// an allowed folder, and looked at once each. A file named in several ways (through "./", by links) is one file.
 class NamedFiles {
   public:
     NamedFiles(const std::filesystem::path& scene, const Limits& limits);
@@ -62,10 +63,13 @@ class NamedFiles {
     const Found& find(std::string_view name);
 
   private:
-    Found look(std::string_view name) const;
+    using Identity = std::pair<std::uint64_t, std::uint64_t>;  // device and inode
+
+    Found look(std::string_view name);
 
     std::filesystem::path scene_, folder_;
     std::vector<std::filesystem::path> roots_;
+    std::map<Identity, std::filesystem::path> first_names_;
     std::map<std::string, Found, std::less<>> seen_;
 };
 

@@ -24,15 +24,26 @@ std::string margin_under(std::string_view text) {
 
 std::size_t characters(std::string_view text) { return std::ranges::count_if(text, starts_character); }
 
+// True for a character (whole, UTF-8) that would steer a terminal rather than be seen: the control characters but tab,
+// and those of Unicode that end lines or turn the direction of text (Boucher and Anderson, Trojan Source, 2021).
+bool steers_terminal(std::string_view character) {
+    const auto first = static_cast<unsigned char>(character[0]);
+    if (first < 0x20 || first == 0x7F) return first != '\t';
+    if (character.size() == 2) return character <= "\xC2\x9F" || character == "\xD8\x9C";
+    return (character >= "\xE2\x80\x8E" && character <= "\xE2\x80\x8F") ||
+           (character >= "\xE2\x80\xA8" && character <= "\xE2\x80\xAE") ||
+           (character >= "\xE2\x81\xA6" && character <= "\xE2\x81\xA9");
+}
+
 // `where` as the line below the message shows it: the line, and a caret with waves under the place.
 std::string caret_lines(const Diagnostic& d) {
-    const std::string line = printable(d.source_line);
+    const std::string_view line = d.source_line;
     const std::size_t column = std::max<std::size_t>(d.where.column, 1) - 1;
     const std::size_t start = std::min(column - std::min(d.skipped, column), line.size());
-    const std::string_view under = std::string_view(line).substr(start, d.where.length);
+    const std::string under = printable(line.substr(start, d.where.length));
     const std::string before = d.skipped > 0 ? "..." : "";
-    return "\n  " + before + line + "\n  " + std::string(before.size(), ' ') +
-           margin_under(std::string_view(line).substr(0, start)) + "^" +
+    return "\n  " + before + printable(line) + "\n  " + std::string(before.size(), ' ') +
+           margin_under(printable(line.substr(0, start))) + "^" +
            std::string(std::max<std::size_t>(characters(under), 1) - 1, '~');
 }
 
@@ -60,11 +71,8 @@ std::string printable(std::string_view text) {
     std::string result;
     result.reserve(text.size());
     while (!text.empty()) {
-        const auto byte = static_cast<unsigned char>(text[0]);
         const std::size_t length = utf8_length(text);
-        const bool control = (byte < 0x20 && byte != '\t') || byte == 0x7F ||
-                             (byte == 0xC2 && length == 2 && static_cast<unsigned char>(text[1]) < 0xA0);
-        if (length == 0 || control)
+        if (length == 0 || steers_terminal(text.substr(0, length)))
             result += '?';
         else
             result += text.substr(0, length);
@@ -79,6 +87,8 @@ std::string quoted(std::string_view word) {
     while (end > 0 && !starts_character(word[end])) --end;
     return "'" + printable(word.substr(0, end)) + "...'";
 }
+
+std::string quoted_name(const std::string& file) { return "'" + printable(file) + "'"; }
 
 void quote_line(Diagnostic& diagnostic, std::string_view line) {
     std::size_t begin = 0, end = line.size();
@@ -99,12 +109,13 @@ std::string to_string(const Diagnostic& diagnostic) {
     if (diagnostic.where.line > 0)
         text += ":" + std::to_string(diagnostic.where.line) + ":" + std::to_string(diagnostic.where.column);
     text += diagnostic.severity == Severity::error ? ": error: " : ": warning: ";
-    text += diagnostic.what;
+    text += printable(diagnostic.what);
+    const std::string expected = printable(diagnostic.expected);
     if (!diagnostic.source_line.empty()) {
         text += caret_lines(diagnostic);
-        if (!diagnostic.expected.empty()) text += " " + diagnostic.expected;
-    } else if (!diagnostic.expected.empty()) {
-        text += "\n  " + diagnostic.expected;
+        if (!expected.empty()) text += " " + expected;
+    } else if (!expected.empty()) {
+        text += "\n  " + expected;
     }
     return text;
 }

@@ -44,7 +44,10 @@ void quote_line(Diagnostic& diagnostic, std::string_view line);
 // 'word' for a message: cut when long, and safe to print on a terminal (see printable).
 std::string quoted(std::string_view word);
 
-// `text` with each control character but tab, and each byte that is not UTF-8, replaced by '?'.
+// The whole name of a file, as quoted.
+std::string quoted_name(const std::string& file);
+
+// `text` with each character that would steer a terminal, and each byte that is not UTF-8, replaced by '?'.
 std::string printable(std::string_view text);
 
 // file:line:column: error: what

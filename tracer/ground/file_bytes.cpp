@@ -1,7 +1,6 @@
 #include "tracer/ground/file_bytes.h"
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,9 +8,9 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <new>
 #include <system_error>
-#include <utility>
+
+#include "tracer/ground/error.h"
 
 namespace raywalk {
 
@@ -58,34 +57,32 @@ long read_piece(int fd, char* into, std::size_t begin, std::size_t end) {
     return static_cast<long>(done - begin);
 }
 
+// True if a part of a large file was never written. Such a hole reads as bytes of zero, which no text has.
+bool has_hole(int fd, std::uint64_t size) {
+    constexpr std::uint64_t worth_a_look = 1 << 20;
+    return size >= worth_a_look && static_cast<std::uint64_t>(lseek(fd, 0, SEEK_HOLE)) < size;
+}
+
 }  // namespace
 
-FileBytes::FileBytes(std::size_t size) : size_(size), mapped_(size + padding) {
-    void* memory = mmap(nullptr, mapped_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    data_ = static_cast<char*>(memory);
-    madvise(memory, mapped_, MADV_HUGEPAGE);  // fewer page faults; a refusal does not matter
-    std::memset(data_ + size, '\n', padding);
+FileBytes::FileBytes(std::size_t size) : data_(new char[size + padding]), size_(size) {
+    std::memset(data_.get() + size, '\n', padding);
 }
 
-FileBytes::FileBytes(FileBytes&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)),
-      size_(std::exchange(other.size_, 0)),
-      mapped_(std::exchange(other.mapped_, 0)) {}
+namespace {
 
-FileBytes::~FileBytes() {
-    if (data_) munmap(data_, mapped_);
-}
-
-FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+FileBytes read_bytes(const std::filesystem::path& file, std::uint64_t most_bytes, bool text) {
     // Non-blocking: opening a pipe must not wait for a writer.
     const Descriptor fd(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (fd.get() < 0 && (errno == EMFILE || errno == ENFILE || errno == ENOMEM))  // not the file's fault
+        throw WorkError("cannot open " + quoted_name(file.string()) + ": " + reason(errno));
     if (fd.get() < 0) throw FileProblem("cannot be opened: " + reason(errno));
     struct stat before {};
     if (fstat(fd.get(), &before) != 0) throw FileProblem("cannot be examined: " + reason(errno));
     if (std::string kind = kind_problem(before.st_mode); !kind.empty()) throw FileProblem(kind);
     const auto size = static_cast<std::uint64_t>(before.st_size);
     if (size > most_bytes) throw FileProblem("has " + std::to_string(size) + " bytes", true);
+    if (text && has_hole(fd.get(), size)) throw FileProblem("has holes, so it is no text");
 
     FileBytes bytes(size);
     std::atomic<long> error{0};
@@ -113,6 +110,16 @@ FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_
     if (changed || longer || after.st_size != before.st_size || !same_time(after.st_mtim, before.st_mtim))
         throw FileProblem("changed while it was read; try again");
     return bytes;
+}
+
+}  // namespace
+
+FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+    return read_bytes(file, most_bytes, false);
+}
+
+FileBytes read_text_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+    return read_bytes(file, most_bytes, true);
 }
 
 std::string file_problem(const std::filesystem::path& file) {

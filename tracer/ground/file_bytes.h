@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -17,16 +18,13 @@ class FileBytes {
     static constexpr std::size_t padding = 64;
 
     explicit FileBytes(std::size_t size);
-    FileBytes(FileBytes&& other) noexcept;
-    FileBytes& operator=(FileBytes&&) = delete;
-    ~FileBytes();
 
-    [[nodiscard]] std::string_view text() const { return {data_, size_}; }
-    [[nodiscard]] char* data() { return data_; }
+    [[nodiscard]] std::string_view text() const { return {data_.get(), size_}; }
+    [[nodiscard]] char* data() { return data_.get(); }
 
   private:
-    char* data_ = nullptr;
-    std::size_t size_ = 0, mapped_ = 0;
+    std::unique_ptr<char[]> data_;
+    std::size_t size_;
 };
 
 // Why a file could not be read, as the end of a sentence: "is a folder", "cannot be opened: Permission denied". The
@@ -40,6 +38,9 @@ class FileProblem : public std::runtime_error {
 
 // Reads a regular file of at most `most_bytes`. Throws FileProblem. Large files are read by several threads.
 FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
+
+// As above, a file of text: one with holes, which takes no space on disk but would take memory, is refused unread.
+FileBytes read_text_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
 
 // What would keep `file` from being read (it is missing, a folder, a device, not readable); empty when nothing would.
 std::string file_problem(const std::filesystem::path& file);

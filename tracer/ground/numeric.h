@@ -12,19 +12,18 @@ inline constexpr float surface_offset = 2e-6f;
 inline constexpr float shadow_t_max = 1.0f - 4e-6f;
 
 // Boxes are tested as if grown by this fraction of the largest coordinate of scene and ray origin: two roundings of
-// b * rd - o * rd move a slab by at most 2 e of it each.
-inline constexpr float box_padding = 3e-7f;
+// b * rd - o * rd move a slab by at most 2 e of it each, and triangles may grow (below) out of their boxes by the rest.
+inline constexpr float box_padding = 8e-7f;
 
 // Entry and exit distances of boxes are compared with this relative slack (Ize, Robust BVH Ray Traversal, 2013).
 inline constexpr float slab_slack = 4e-7f;
 
-// Single rays accept barycentric weights down to minus this, so that no ray slips between triangles that share an edge
-// or a corner: the Moeller-Trumbore weights are off by about e |distance| / |edge|. A triangle grows by this fraction
-// of its own size, which no picture shows.
-inline constexpr float edge_slack = 1e-5f;
-
-// A sum of three products is compared with zero with this slack, relative to the sum of their magnitudes.
-inline constexpr float sum_slack = 3e-7f;
+// A triangle grows for each ray by this fraction of its distance from the ray's origin, so that no ray slips between
+// triangles that share an edge or a corner: the weights u . d and v . d are off by some e |edge| |distance| |d|. That
+// is less than coordinates are rounded by. Rays near its plane would see a triangle grow without end: by no more than
+// the second, a fraction of its own size.
+inline constexpr float triangle_growth = 2e-7f;
+inline constexpr float most_growth = 0.02f;
 
 // A direction component smaller than this is replaced by it, sign kept, so that its reciprocal stays finite and
 // 0 * infinity never appears.

@@ -1,6 +1,7 @@
 #include "tracer/ground/whole_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void fail(const fs::path& file, int error) {
-    throw WorkError("cannot write '" + file.string() + "': " + std::generic_category().message(error));
+    throw WorkError("cannot write " + quoted_name(file.string()) + ": " + std::generic_category().message(error));
 }
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
@@ -72,9 +73,10 @@ class Descriptor {
 // Tries names ".NAME-0.part", ... beside `file` until one is free; `make` returns 0 or -1 and errno.
 template <class Make>
 fs::path free_name_beside(const fs::path& file, const Make& make) {
+    constexpr std::size_t kept = 200;  // of a long name: with what is added here it stays below the usual 255 bytes
+    const std::string start = "." + file.filename().string().substr(0, kept) + "-" + std::to_string(getpid()) + "-";
     for (int i = 0;; ++i) {
-        fs::path name = folder_of(file) / ("." + file.filename().string() + "-" + std::to_string(getpid()) + "-" +
-                                           std::to_string(i) + ".part");
+        fs::path name = folder_of(file) / (start + std::to_string(i) + ".part");
         if (make(name) >= 0) return name;
         if (errno != EEXIST) return {};
     }
@@ -88,9 +90,14 @@ int rename_to(const fs::path& name, const fs::path& target) {
     return error;
 }
 
+// Into a device or a pipe.
 void write_directly(const fs::path& file, const fs::path& target, std::string_view bytes) {
-    Descriptor descriptor(open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    // Opening a pipe that nobody reads would wait for ever.
+    Descriptor descriptor(open(target.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (descriptor.number() < 0 && errno == ENXIO)
+        throw WorkError("cannot write " + quoted_name(file.string()) + ": nothing reads from it");
     if (descriptor.number() < 0) fail(file, errno);
+    fcntl(descriptor.number(), F_SETFL, O_WRONLY);  // from here on a full pipe is waited for
     if (const int error = descriptor.write(bytes)) fail(file, error);
     if (const int error = descriptor.close()) fail(file, error);
 }
@@ -139,13 +146,17 @@ void write_whole(const fs::path& file, std::string_view bytes) {
 std::string obstacle_to_writing(const fs::path& file) {
     std::error_code error;
     if (fs::is_directory(file, error)) return "it is a folder";
+    // A name that is too long, a link that leads to itself; only that nothing is there yet is no obstacle.
+    struct stat status {};
+    if (stat(file.c_str(), &status) != 0 && errno != ENOENT && errno != ENOTDIR)
+        return std::generic_category().message(errno);
     const fs::path target = followed(file);
     if (is_special(target)) return access(target.c_str(), W_OK) == 0 ? "" : std::generic_category().message(errno);
     const fs::path folder = folder_of(target);
-    if (!fs::exists(folder, error)) return "its folder '" + folder.string() + "' does not exist";
-    if (!fs::is_directory(folder, error)) return "'" + folder.string() + "' is not a folder";
+    if (!fs::exists(folder, error)) return "its folder " + quoted_name(folder.string()) + " does not exist";
+    if (!fs::is_directory(folder, error)) return quoted_name(folder.string()) + " is not a folder";
     if (access(folder.c_str(), W_OK | X_OK) != 0)
-        return "its folder '" + folder.string() + "': " + std::generic_category().message(errno);
+        return "its folder " + quoted_name(folder.string()) + ": " + std::generic_category().message(errno);
     return {};
 }
 

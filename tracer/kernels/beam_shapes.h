@@ -15,35 +15,31 @@ HWY_BEFORE_NAMESPACE();
 namespace raywalk {
 namespace HWY_NAMESPACE {
 
-// Nearer than what the group has, or as near with a lower id: then it is the group's. Any-hit rays that hit are done:
-// nothing is nearer than an infinite inverse depth.
-template <bool any_hit>
-HWY_INLINE Mask nearer(const BeamGroup& group, Real inverse_depth, Int id) {
-    const Mask closer = inverse_depth > group.inverse_depth;
-    if constexpr (any_hit) return closer;
-    return closer | ((inverse_depth == group.inverse_depth) & (id < group.id));
-}
+// A pair of a group of rays and a shape of a block that may meet: bit 16 group + lane of the shape.
+using Pairs = std::uint64_t;
 
+// What a group of rays hits, where that is nearer than what they have, or as near with a lower id.
 template <bool any_hit>
-HWY_INLINE void finish_hits(std::uint64_t hit, Beam& beam) {
-    if (hit == 0) return;
+HWY_INLINE bool take_hits(Mask hit, Real t, Real u, Real v, std::int32_t id, int group, Beam& beam) {
+    const int at = group * lanes;
+    hit &= mask_of_bits(lanes_of(beam.active, group));
     if constexpr (any_hit) {
-        beam.active &= ~hit;
-        for (int g = 0; g < beam_groups; ++g) beam.group[g].active &= ~group_bits(hit, g);
+        hit &= t < load(beam.rays->t_max + at);
+        beam.active &= ~rays_of(bits(hit), group);
+    } else {
+        BeamHits& hits = *beam.hits;
+        const Real nearest = load(hits.t + at);
+        const Int own(id), nearest_id = load(hits.id + at);
+        hit &= (t < nearest) | ((t == nearest) & (own < nearest_id));
+        store(select(hit, t, nearest), hits.t + at);
+        store(select(hit, own, nearest_id), hits.id + at);
+        store(select(hit, u, load(hits.u + at)), hits.u + at);
+        store(select(hit, v, load(hits.v + at)), hits.v + at);
     }
-    if (!any_hit || beam.active != 0) shorten_beam(beam);
+    return any(hit);
 }
 
-// Sixteen triangles relative to the beam's origin, turned to (U, V, depth) axes. The three edge functions are linear in
-// (U, V): edge[i] . (U, V, 1) has the sign of the weight of corner i. They are formed from sums and differences of
-// corners, (P1 + P2) x (P2 - P1), because P1 x P2 itself cancels: and so that the two triangles of an edge see exactly
-// opposite values, and no ray slips between.
-struct alignas(64) BeamTriangles {
-    float edge[3][3][lanes];  // by corner, by axis
-    float plane[3][lanes];    // 1 / depth = plane . (U, V, 1)
-};
-
-// Which triangles may touch the beam at all: outside none of its four sides and depths.
+// Which triangles may touch the beam at all: outside none of its four sides and depths. Corners: along U, V and depth.
 HWY_INLINE Mask touches_beam(const Beam& beam, const Vec3 (&p)[3]) {
     Mask keep = min(min(p[0].z, p[1].z), p[2].z) <= Real(beam.depth_max);
     const auto spans = [&](Real x0, Real x1, Real x2, float low, float high) HWY_ATTR {
@@ -51,156 +47,133 @@ HWY_INLINE Mask touches_beam(const Beam& beam, const Vec3 (&p)[3]) {
                                neg_mul_add(Real(high), p[2].z, x2));
         const Real above = max(max(neg_mul_add(Real(low), p[0].z, x0), neg_mul_add(Real(low), p[1].z, x1)),
                                neg_mul_add(Real(low), p[2].z, x2));
-        return (below <= Real(beam.padding)) & (above >= Real(-beam.padding));
+        return (below <= Real(2 * beam.padding)) & (above >= Real(-2 * beam.padding));
     };
     keep &= spans(p[0].x, p[1].x, p[2].x, beam.u0, beam.u1);
     keep &= spans(p[0].y, p[1].y, p[2].y, beam.v0, beam.v1);
     return keep;
 }
 
-// No weight is negative over the whole (U, V) box of the group.
-HWY_INLINE Mask touches_group(const BeamGroup& group, const Vec3 (&edge)[3]) {
-    Mask keep = mask_of_bits(0xffffu);
-    for (const Vec3& e : edge) {
-        const Real from_u = max(e.x * Real(group.u0), e.x * Real(group.u1));
-        const Real from_v = max(e.y * Real(group.v0), e.y * Real(group.v1));
-        keep &= e.z + from_u + from_v >= Real(-sum_slack) * (abs(e.z) + abs(from_u) + abs(from_v));
-    }
-    return keep;
-}
-
-template <bool any_hit>
-HWY_INLINE std::uint32_t hit_group(std::uint32_t candidates, const BeamTriangles& triangles, const std::int32_t* ids,
-                                   BeamGroup& group) {
-    const Real u = group.u, v = group.v;
-    Mask any = mask_of_bits(0);
-    for (; candidates != 0; candidates &= candidates - 1) {
-        const int l = std::countr_zero(candidates);
-        const auto linear = [&](const float(&c)[3][lanes]) HWY_ATTR {
-            return mul_add(Real(c[0][l]), u, mul_add(Real(c[1][l]), v, Real(c[2][l])));
+// The forms of sixteen triangles: [axis][lane].
+struct alignas(64) BeamTriangles {
+    float normal[3][lanes], u[3][lanes], v[3][lanes];
+    float volume[lanes], spread[lanes];
+    [[nodiscard]] HWY_INLINE TriangleForms one(int l) const {
+        const auto vector = [l](const float(&a)[3][lanes]) HWY_ATTR {
+            return Vec3{Real(a[0][l]), Real(a[1][l]), Real(a[2][l])};
         };
-        const Real w0 = linear(triangles.edge[0]), w1 = linear(triangles.edge[1]), w2 = linear(triangles.edge[2]);
-        const Real inverse_depth = linear(triangles.plane);
-        const Int id = Int(ids[l]);
-        const Mask hit = (min(min(w0, w1), w2) >= Real(0.0f)) & nearer<any_hit>(group, inverse_depth, id) &
-                         (inverse_depth * group.depth_min < Real(1.0f));
-        if constexpr (any_hit) {
-            group.inverse_depth = select(hit, Real(infinity), group.inverse_depth);
-        } else {
-            group.inverse_depth = select(hit, inverse_depth, group.inverse_depth);
-            group.id = select(hit, id, group.id);
-            group.weight[0] = select(hit, w0, group.weight[0]);
-            group.weight[1] = select(hit, w1, group.weight[1]);
-            group.weight[2] = select(hit, w2, group.weight[2]);
-        }
-        any |= hit;
+        return {vector(normal), vector(u), vector(v), Real(volume[l]), Real(spread[l])};
     }
-    return bits(any);
+};
+
+HWY_INLINE void store(Vec3 value, float (&to)[3][lanes]) {
+    store(value.x, to[0]);
+    store(value.y, to[1]);
+    store(value.z, to[2]);
+}
+
+// The three weights of a triangle are linear in (U, V) but for a common factor: a triangle touches a group of rays
+// unless one of them is negative over the group's whole range.
+struct TriangleEdges {
+    Vec3 edge[3];
+    Real steepness_u[3], steepness_v[3];  // magnitudes of edge.x and edge.y
+};
+HWY_INLINE TriangleEdges triangle_edges(const BeamTriangles& triangles, const Beam& beam) {
+    const Real flip = copy_sign(Real(1.0f), load(triangles.volume)), flip_k = flip * Real(beam.sign);
+    const auto turned = [&](const float(&form)[3][lanes]) HWY_ATTR {
+        return Vec3{load(form[beam.a]) * flip, load(form[beam.b]) * flip, load(form[beam.k]) * flip_k};
+    };
+    TriangleEdges e;
+    e.edge[1] = turned(triangles.u);
+    e.edge[2] = turned(triangles.v);
+    e.edge[0] = turned(triangles.normal) - e.edge[1] - e.edge[2];
+    // Room for the triangles' growth and for all rounding.
+    const Real margin = load(triangles.spread) * Real(triangle_growth * 8 * (1 + 2 * steepest_slope));
+    for (int i = 0; i < 3; ++i) {
+        e.edge[i].z += margin;
+        e.steepness_u[i] = abs(e.edge[i].x);
+        e.steepness_v[i] = abs(e.edge[i].y);
+    }
+    return e;
+}
+HWY_INLINE Mask touches_group(const BeamGroup& group, const TriangleEdges& e) {
+    Real least(infinity);
+    for (int i = 0; i < 3; ++i) {
+        const Real middle =
+            mul_add(e.edge[i].x, Real(group.middle_u), mul_add(e.edge[i].y, Real(group.middle_v), e.edge[i].z));
+        const Real most =
+            mul_add(e.steepness_u[i], Real(group.half_u), mul_add(e.steepness_v[i], Real(group.half_v), middle));
+        least = min(most, least);
+    }
+    return least >= Real(0.0f);
 }
 
 template <bool any_hit>
-HWY_INLINE void beam_triangles(const TriangleBlock& block, Beam& beam) {
-    const Real sign = Real(beam.sign);
+HWY_INLINE void beam_triangles(const TriangleBlock& block, const float* origin, Beam& beam) {
     Vec3 p[3];
     for (int i = 0; i < 3; ++i)
-        p[i] = {load(block.corner[i][beam.a]) - Real(beam.origin[beam.a]),
-                load(block.corner[i][beam.b]) - Real(beam.origin[beam.b]),
-                (load(block.corner[i][beam.k]) - Real(beam.origin[beam.k])) * sign};
+        p[i] = {load(block.corner[i][beam.a]) - Real(origin[beam.a]),
+                load(block.corner[i][beam.b]) - Real(origin[beam.b]),
+                (load(block.corner[i][beam.k]) - Real(origin[beam.k])) * Real(beam.sign)};
     const std::uint32_t kept = bits(touches_beam(beam, p));
     if (kept == 0) return;
+    if (!beam.groups_measured) measure_groups(beam);
 
-    const Vec3 e0 = p[2] - p[1], e1 = p[0] - p[2], e2 = p[1] - p[0];
-    const Vec3 normal = cross(e1, e2);
-    const Real volume = dot(p[0], normal);
-    const Real flip = copy_sign(Real(1.0f), volume), scale = Real(1.0f) / volume;
-    Vec3 edge[3] = {cross(p[1] + p[2], e0) * flip, cross(p[2] + p[0], e1) * flip, cross(p[0] + p[1], e2) * flip};
-    // Around a shared corner the rounded edges may leave a gap: each is moved outward by its own rounding.
-    for (Vec3& e : edge) {
-        const Real magnitude = abs(e.x) * Real(beam.steepest) + abs(e.y) * Real(beam.steepest) + abs(e.z);
-        e.z = mul_add(Real(sum_slack), magnitude, e.z);
-    }
+    const TriangleForms forms = triangle_forms(block, splat3(origin));
     BeamTriangles triangles;
-    for (int i = 0; i < 3; ++i) {
-        store(edge[i].x, triangles.edge[i][0]);
-        store(edge[i].y, triangles.edge[i][1]);
-        store(edge[i].z, triangles.edge[i][2]);
-    }
-    store(normal.x * scale, triangles.plane[0]);
-    store(normal.y * scale, triangles.plane[1]);
-    store(normal.z * scale, triangles.plane[2]);
+    store(forms.normal, triangles.normal);
+    store(forms.u, triangles.u);
+    store(forms.v, triangles.v);
+    store(forms.volume, triangles.volume);
+    store(forms.spread, triangles.spread);
+    const TriangleEdges edges = triangle_edges(triangles, beam);
+    Pairs pairs = 0;
+    for (int g = 0; g < beam_groups; ++g) pairs |= rays_of(kept & bits(touches_group(beam.group[g], edges)), g);
 
-    std::uint64_t hit = 0;
-    for (int g = 0; g < beam_groups; ++g) {
-        BeamGroup& group = beam.group[g];
-        if (group.active == 0) continue;
-        const std::uint32_t candidates = kept & bits(touches_group(group, edge));
-        if (candidates == 0) continue;
-        beam.tests_left -= std::popcount(candidates);
-        hit |= static_cast<std::uint64_t>(hit_group<any_hit>(candidates, triangles, block.id, group)) << (g * lanes);
+    beam.tests_left -= std::popcount(pairs);
+    bool met = false;
+    for (; pairs != 0; pairs &= pairs - 1) {
+        const int pair = std::countr_zero(pairs), group = pair / lanes, l = pair % lanes, at = group * lanes;
+        const TriangleLanes r = meet_triangles(triangles.one(l), directions_of(*beam.rays, at),
+                                               beam.group[group].growth, load(beam.rays->t_min + at));
+        met |= take_hits<any_hit>(r.hit, r.t, r.u, r.v, block.id[l], group, beam);
     }
-    finish_hits<any_hit>(hit, beam);
+    if (met) shorten_beam(beam);
 }
 
-// Closest approach of the ray (U, V, 1) to the centre, as for single rays.
-template <bool any_hit>
-HWY_INLINE std::uint32_t hit_group_sphere(const float (&center)[3], float radius, std::int32_t id, BeamGroup& group) {
-    const Vec3 d = {group.u, group.v, Real(1.0f)};
-    const Real inverse_squared = Real(1.0f) / dot(d, d);
-    const Vec3 c = splat3(center);
-    const Real middle = dot(c, d) * inverse_squared;
-    const Vec3 p = c - d * middle;
-    const Real discriminant = Real(radius * radius) - dot(p, p);
-    const Mask meets = discriminant >= Real(0.0f);
-    if (none(meets)) return 0;
-    const Real half = sqrt(max(discriminant, Real(0.0f)) * inverse_squared);
-    const Real first = middle - half;
-    const Real depth = select(first > group.depth_min, first, middle + half);
-    const Real inverse_depth = Real(1.0f) / depth;
-    const Mask hit = meets & (depth > group.depth_min) & nearer<any_hit>(group, inverse_depth, Int(id));
-    if constexpr (any_hit) {
-        group.inverse_depth = select(hit, Real(infinity), group.inverse_depth);
-    } else {
-        group.inverse_depth = select(hit, inverse_depth, group.inverse_depth);
-        group.id = select(hit, Int(id), group.id);
-        group.weight[0] = select(hit, Real(1.0f), group.weight[0]);
-        group.weight[1] = select(hit, Real(0.0f), group.weight[1]);
-        group.weight[2] = select(hit, Real(0.0f), group.weight[2]);
-    }
-    return bits(hit);
+// A sphere touches a group of rays unless it lies wholly beyond one of the planes through the group's steepest slopes.
+HWY_INLINE Mask touches_group(const BeamGroup& group, Vec3 center, Real radius) {
+    const auto beyond = [&](Real x, float middle, float half) HWY_ATTR {
+        return abs(neg_mul_add(Real(middle), center.z, x)) - Real(half) * abs(center.z);
+    };
+    return (beyond(center.x, group.middle_u, group.half_u) <= radius * Real(group.stretch_u)) &
+           (beyond(center.y, group.middle_v, group.half_v) <= radius * Real(group.stretch_v));
 }
 
 template <bool any_hit>
-HWY_INLINE void beam_spheres(const SphereBlock& block, std::int32_t first_id, Beam& beam) {
-    const Real x = load(block.center[beam.a]) - Real(beam.origin[beam.a]);
-    const Real y = load(block.center[beam.b]) - Real(beam.origin[beam.b]);
-    const Real z = (load(block.center[beam.k]) - Real(beam.origin[beam.k])) * Real(beam.sign);
-    const Real radius = load(block.radius);
-    // The sphere's box against the beam, as if it were a node's.
-    const Real grown = radius + Real(beam.padding);
-    const Real near_z = max(z - grown, Real(beam.depth_min)), far_z = z + grown;
-    const auto reach = [&](float slope, Real at_rising, Real at_falling)
-                           HWY_ATTR { return Real(slope) * (slope >= 0 ? at_rising : at_falling); };
-    const Mask keep = (far_z >= Real(beam.depth_min)) & (near_z <= Real(beam.depth_max)) &
-                      (x - grown <= reach(beam.u1, far_z, near_z)) & (x + grown >= reach(beam.u0, near_z, far_z)) &
-                      (y - grown <= reach(beam.v1, far_z, near_z)) & (y + grown >= reach(beam.v0, near_z, far_z));
-    std::uint32_t kept = bits(keep);
-    if (kept == 0) return;
+HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std::int32_t first_id, Beam& beam) {
+    const Vec3 center = sphere_centers(block, splat3(origin));
     alignas(64) float centers[3][lanes];
-    store(x, centers[0]);
-    store(y, centers[1]);
-    store(z, centers[2]);
-    std::uint64_t hit = 0;
-    for (; kept != 0; kept &= kept - 1) {
-        const int l = std::countr_zero(kept);
-        const float center[3] = {centers[0][l], centers[1][l], centers[2][l]};
-        for (int g = 0; g < beam_groups; ++g) {
-            if (beam.group[g].active == 0) continue;
-            hit |= static_cast<std::uint64_t>(
-                       hit_group_sphere<any_hit>(center, block.radius[l], first_id + block.id[l], beam.group[g]))
-                   << (g * lanes);
-        }
+    store(center, centers);
+    const Real grown = load(block.radius) + Real(beam.padding);
+    const Vec3 turned = {load(centers[beam.a]), load(centers[beam.b]), load(centers[beam.k]) * Real(beam.sign)};
+    const std::uint32_t deep_enough =
+        bits((turned.z + grown >= Real(beam.depth_min)) & (turned.z - grown <= Real(beam.depth_max)));
+    if (deep_enough == 0) return;
+    if (!beam.groups_measured) measure_groups(beam);
+    Pairs pairs = 0;
+    for (int g = 0; g < beam_groups; ++g)
+        pairs |= rays_of(deep_enough & bits(touches_group(beam.group[g], turned, grown)), g);
+
+    bool met = false;
+    for (; pairs != 0; pairs &= pairs - 1) {
+        const int pair = std::countr_zero(pairs), group = pair / lanes, l = pair % lanes, at = group * lanes;
+        const Vec3 own = {Real(centers[0][l]), Real(centers[1][l]), Real(centers[2][l])};
+        const SphereLanes r = meet_spheres(own, Real(block.radius[l]), directions_of(*beam.rays, at),
+                                           beam.group[group].inverse_squared_length, load(beam.rays->t_min + at));
+        met |= take_hits<any_hit>(r.hit, r.t, Real(0.0f), Real(0.0f), first_id + block.id[l], group, beam);
     }
-    finish_hits<any_hit>(hit, beam);
+    if (met) shorten_beam(beam);
 }
 
 }  // namespace HWY_NAMESPACE

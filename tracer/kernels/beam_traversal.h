@@ -39,11 +39,11 @@ HWY_INLINE BeamSlabs make_beam_slabs(const Beam& beam) {
     s.lower_b = beam.b * block_width;
     s.upper_b = (3 + beam.b) * block_width;
     s.sign = Real(beam.sign);
-    s.near_offset = Real(beam.origin[beam.k] * beam.sign + beam.padding);
-    s.far_offset = Real(beam.origin[beam.k] * beam.sign - beam.padding);
+    s.near_offset = Real(beam.rays->origin[beam.k] * beam.sign + beam.padding);
+    s.far_offset = Real(beam.rays->origin[beam.k] * beam.sign - beam.padding);
     s.u0 = Real(beam.u0), s.u1 = Real(beam.u1), s.v0 = Real(beam.v0), s.v1 = Real(beam.v1);
-    s.a_low = Real(beam.origin[beam.a] - beam.padding), s.a_high = Real(beam.origin[beam.a] + beam.padding);
-    s.b_low = Real(beam.origin[beam.b] - beam.padding), s.b_high = Real(beam.origin[beam.b] + beam.padding);
+    s.a_low = Real(beam.rays->origin[beam.a] - beam.padding), s.a_high = Real(beam.rays->origin[beam.a] + beam.padding);
+    s.b_low = Real(beam.rays->origin[beam.b] - beam.padding), s.b_high = Real(beam.rays->origin[beam.b] + beam.padding);
     s.u0_rises = s.u0 >= Real(0.0f), s.u1_rises = s.u1 >= Real(0.0f);
     s.v0_rises = s.v0 >= Real(0.0f), s.v1_rises = s.v1 >= Real(0.0f);
     return s;
@@ -78,9 +78,10 @@ void traverse_beam(const CompiledScene& scene, const Bvh& bvh, Beam& beam) {
         if (at.leaf()) {
             for (std::uint32_t i = at.first(), end = i + at.blocks(); i != end && !beam_done<any_hit>(beam); ++i) {
                 if (at.spheres())
-                    beam_spheres<any_hit>(scene.hierarchy.sphere_blocks[i], scene.triangle_count, beam);
+                    beam_spheres<any_hit>(scene.hierarchy.sphere_blocks[i], beam.rays->origin, scene.triangle_count,
+                                          beam);
                 else
-                    beam_triangles<any_hit>(scene.hierarchy.triangle_blocks[i], beam);
+                    beam_triangles<any_hit>(scene.hierarchy.triangle_blocks[i], beam.rays->origin, beam);
             }
             if (beam_done<any_hit>(beam)) return;
         } else {
@@ -117,8 +118,8 @@ void traverse_beam(const CompiledScene& scene, const KdTree& tree, Beam& beam) {
 
     KdInterval stack[KdTree::max_depth + 1];
     int depth = 0;
-    const float low = (h.bounds.lower[beam.k] - beam.origin[beam.k]) * beam.sign;
-    const float high = (h.bounds.upper[beam.k] - beam.origin[beam.k]) * beam.sign;
+    const float low = (h.bounds.lower[beam.k] - beam.rays->origin[beam.k]) * beam.sign;
+    const float high = (h.bounds.upper[beam.k] - beam.rays->origin[beam.k]) * beam.sign;
     KdInterval at = {0, std::max(beam.depth_min, std::min(low, high) - beam.padding),
                      std::min(beam.depth_max, std::max(low, high) + beam.padding)};
     if (!(at.enter <= at.leave)) return;
@@ -127,7 +128,7 @@ void traverse_beam(const CompiledScene& scene, const KdTree& tree, Beam& beam) {
         KdNode node = tree.nodes[at.node];
         while (!node.leaf()) {
             const int axis = node.axis();
-            const float x = node.split - beam.origin[axis];
+            const float x = node.split - beam.rays->origin[axis];
             const bool ahead = x > 0;
             const std::uint32_t lower = node.index();
             const std::uint32_t near_child = ahead ? lower : lower + 1, far_child = ahead ? lower + 1 : lower;
@@ -152,11 +153,12 @@ void traverse_beam(const CompiledScene& scene, const KdTree& tree, Beam& beam) {
         }
         const KdLeaf& leaf = tree.leaves[node.index()];
         for (std::uint32_t i = 0; i < leaf.triangle_blocks; ++i) {
-            beam_triangles<any_hit>(h.triangle_blocks[leaf.first_triangle_block + i], beam);
+            beam_triangles<any_hit>(h.triangle_blocks[leaf.first_triangle_block + i], beam.rays->origin, beam);
             if (beam_done<any_hit>(beam)) return;
         }
         for (std::uint32_t i = 0; i < leaf.sphere_blocks; ++i) {
-            beam_spheres<any_hit>(h.sphere_blocks[leaf.first_sphere_block + i], scene.triangle_count, beam);
+            beam_spheres<any_hit>(h.sphere_blocks[leaf.first_sphere_block + i], beam.rays->origin, scene.triangle_count,
+                                  beam);
             if (beam_done<any_hit>(beam)) return;
         }
         do {

@@ -25,9 +25,9 @@ void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint6
 // Which of the `active` rays meet anything at t in (t_min, t_max).
 std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active);
 
-// Nearest hit of one ray, and whether it meets anything: for rays that share neither origin nor direction.
-RayHit intersect_ray(const CompiledScene& scene, const Ray& ray);
-bool occluded_ray(const CompiledScene& scene, const Ray& ray);
+// The same for rays that share neither origin nor direction.
+void intersect_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active, BeamHits& hits);
+std::uint64_t occluded_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk

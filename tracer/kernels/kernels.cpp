@@ -18,15 +18,6 @@ namespace raywalk {
 namespace HWY_NAMESPACE {
 namespace {
 
-bool left_out(const RayArrays& rays, std::size_t i) { return !(rays.t_max[i] > rays.t_min[i]); }
-
-Ray ray_of(const RayArrays& rays, std::size_t i) {
-    return {{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
-            {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
-            rays.t_min[i],
-            rays.t_max[i]};
-}
-
 // Copies numbers between arrays and the aligned arrays of a beam, in registers where there are 64 of them.
 template <class T>
 HWY_INLINE void copy(const T* from, T* to, std::size_t count) {
@@ -37,6 +28,14 @@ HWY_INLINE void copy(const T* from, T* to, std::size_t count) {
     for (int at = 0; at < beam_rays; at += lanes) store_unaligned(load_unaligned(from + at), to + at);
 }
 
+// Which of the first `count` rays are not left out.
+std::uint64_t taking_part(const float* t_min, const float* t_max, std::size_t count) {
+    std::uint64_t active = 0;
+    for (int at = 0; at < beam_rays; at += lanes)
+        active |= static_cast<std::uint64_t>(bits(load(t_max + at) > load(t_min + at))) << at;
+    return count == beam_rays ? active : active & ((std::uint64_t{1} << count) - 1);
+}
+
 // Rays [first, first + 64) of the arrays, as many as there are; returns which are not left out.
 std::uint64_t fill_beam(const RayArrays& rays, std::size_t first, BeamRays& beam) {
     const std::size_t count = std::min<std::size_t>(rays.size() - first, beam_rays);
@@ -44,33 +43,33 @@ std::uint64_t fill_beam(const RayArrays& rays, std::size_t first, BeamRays& beam
     copy(rays.t_min.data() + first, beam.t_min, count);
     copy(rays.t_max.data() + first, beam.t_max, count);
     for (int axis = 0; axis < 3; ++axis) beam.origin[axis] = rays.origin[axis][0];
-    std::uint64_t active = 0;
-    for (int at = 0; at < beam_rays; at += lanes)
-        active |= static_cast<std::uint64_t>(bits(load(beam.t_max + at) > load(beam.t_min + at))) << at;
-    return count == beam_rays ? active : active & ((std::uint64_t{1} << count) - 1);
+    return taking_part(beam.t_min, beam.t_max, count);
 }
 
-void intersect_one_by_one(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        const RayHit hit = left_out(rays, i) ? RayHit{rays.t_max[i], 0, 0, -1} : intersect_ray(scene, ray_of(rays, i));
-        hits.t[i] = hit.t;
-        hits.u[i] = hit.u;
-        hits.v[i] = hit.v;
-        hits.id[i] = hit.id;
+std::uint64_t fill_scattered(const RayArrays& rays, std::size_t first, ScatteredRays& scattered) {
+    const std::size_t count = std::min<std::size_t>(rays.size() - first, beam_rays);
+    for (int axis = 0; axis < 3; ++axis) {
+        copy(rays.origin[axis].data() + first, scattered.origin[axis], count);
+        copy(rays.direction[axis].data() + first, scattered.direction[axis], count);
     }
+    copy(rays.t_min.data() + first, scattered.t_min, count);
+    copy(rays.t_max.data() + first, scattered.t_max, count);
+    return taking_part(scattered.t_min, scattered.t_max, count);
 }
 
-void intersect_as_beams(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    BeamRays beam = {};
+// All rays of the arrays, 64 at a time: `fill` copies them into `some`, `trace` finds what the active ones hit.
+template <class Rays, class Fill, class Trace>
+void intersect_all(const RayArrays& rays, HitArrays& hits, Fill fill, Trace trace) {
+    Rays some = {};
     BeamHits found;
     for (std::size_t first = 0; first < rays.size(); first += beam_rays) {
         const std::size_t count = std::min<std::size_t>(rays.size() - first, beam_rays);
-        const std::uint64_t active = fill_beam(rays, first, beam);
+        const std::uint64_t active = fill(rays, first, some);
         if (active == 0) {
             std::fill_n(hits.id.begin() + static_cast<std::ptrdiff_t>(first), count, -1);
             continue;
         }
-        intersect_beam(scene, beam, active, found);
+        trace(some, active, found);
         copy(found.t, hits.t.data() + first, count);
         copy(found.u, hits.u.data() + first, count);
         copy(found.v, hits.v.data() + first, count);
@@ -78,21 +77,40 @@ void intersect_as_beams(const CompiledScene& scene, const RayArrays& rays, HitAr
     }
 }
 
-void occluded_one_by_one(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    for (std::size_t i = 0; i < rays.size(); ++i)
-        hits.id[i] = !left_out(rays, i) && occluded_ray(scene, ray_of(rays, i)) ? 0 : -1;
-}
-
-void occluded_as_beams(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    BeamRays beam = {};
+template <class Rays, class Fill, class Trace>
+void occlude_all(const RayArrays& rays, HitArrays& hits, Fill fill, Trace trace) {
+    Rays some = {};
     for (std::size_t first = 0; first < rays.size(); first += beam_rays) {
-        const std::uint64_t active = fill_beam(rays, first, beam);
-        const std::uint64_t found = active == 0 ? 0 : occluded_beam(scene, beam, active);
+        const std::uint64_t active = fill(rays, first, some);
+        const std::uint64_t found = active == 0 ? 0 : trace(some, active);
         HWY_ALIGN std::int32_t ids[beam_rays];
         for (int at = 0; at < beam_rays; at += lanes)
             store(select(mask_of_bits(static_cast<std::uint32_t>(found >> at) & 0xffffu), Int(0), Int(-1)), ids + at);
         copy(ids, hits.id.data() + first, std::min<std::size_t>(rays.size() - first, beam_rays));
     }
+}
+
+void intersect_array(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
+    intersect_all<ScatteredRays>(rays, hits, fill_scattered, [&](const auto& some, std::uint64_t active, auto& found) {
+        intersect_scattered(scene, some, active, found);
+    });
+}
+
+void intersect_array_as_beams(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
+    intersect_all<BeamRays>(rays, hits, fill_beam, [&](const auto& some, std::uint64_t active, auto& found) {
+        intersect_beam(scene, some, active, found);
+    });
+}
+
+void occlude_array(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
+    occlude_all<ScatteredRays>(rays, hits, fill_scattered, [&](const auto& some, std::uint64_t active) {
+        return occluded_scattered(scene, some, active);
+    });
+}
+
+void occlude_array_as_beams(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
+    occlude_all<BeamRays>(rays, hits, fill_beam,
+                          [&](const auto& some, std::uint64_t active) { return occluded_beam(scene, some, active); });
 }
 
 }  // namespace
@@ -111,10 +129,10 @@ const Kernels kernels = {
     .lanes = register_lanes,
     .trace_tile = trace_tile,
     .resolve_tile = resolve_tile,
-    .intersect = intersect_one_by_one,
-    .intersect_beam = intersect_as_beams,
-    .occluded = occluded_one_by_one,
-    .occluded_beam = occluded_as_beams,
+    .intersect = intersect_array,
+    .intersect_beam = intersect_array_as_beams,
+    .occluded = occlude_array,
+    .occluded_beam = occlude_array_as_beams,
 };
 
 }  // namespace HWY_NAMESPACE

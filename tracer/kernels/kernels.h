@@ -72,7 +72,7 @@ struct Kernels {
     // the picture; `row_stride` in pixels; `out` points at the tile's first pixel.
     void (*resolve_tile)(const FilmTile& tile, float scale, int columns, int rows, std::uint32_t* out, int row_stride);
 
-    // Nearest hits, one ray at a time.
+    // Nearest hits of rays that share nothing.
     void (*intersect)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
     // The same for rays of one common origin (that of ray 0), traced as beams of 64.
     void (*intersect_beam)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);

@@ -22,7 +22,10 @@ HWY_BEFORE_NAMESPACE();
 namespace raywalk {
 namespace HWY_NAMESPACE {
 
-inline constexpr float farthest = __builtin_inff();  // t_max of rays that end nowhere
+// t_max of rays that end nowhere. Finite: a plane seen at a grazing angle may be hit at any distance, and the products
+// of a ray that starts there (its origin times the largest reciprocal of a direction, 1e18) have to be finite, or the
+// slab test would meet infinity minus infinity.
+inline constexpr float farthest = 1e18f;
 
 // Fewer rays of one mirror go alone.
 inline constexpr int fewest_mirrored = 8;
@@ -41,6 +44,23 @@ inline const float* mirror_normal(const CompiledScene& scene, std::int32_t id) {
     return id < scene.triangle_count
                ? scene.triangles[static_cast<std::size_t>(id)].normal
                : scene.planes[static_cast<std::size_t>(id - scene.triangle_count - scene.sphere_count)].normal;
+}
+
+// The lanes of `mine` become `value`.
+template <class Lanes, class Number>
+HWY_INLINE void take(Mask mine, Lanes value, Number* to) {
+    store(select(mine, value, load(to)), to);
+}
+
+// The hits of `rays`, and no others, become those in `from`.
+inline void take_hits_of(std::uint64_t rays, const BeamHits& from, BeamHits& to) {
+    for (int at = 0; at < beam_rays; at += lanes) {
+        const Mask mine = mask_of_bits(static_cast<std::uint32_t>(rays >> at) & 0xffffu);
+        take(mine, load(from.t + at), to.t + at);
+        take(mine, load(from.u + at), to.u + at);
+        take(mine, load(from.v + at), to.v + at);
+        take(mine, load(from.id + at), to.id + at);
+    }
 }
 
 // Intersects those of the queue's rays from `first` on that planar mirrors made, mirror by mirror; they get the eye's
@@ -81,16 +101,12 @@ inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float 
             store(Real(farthest), beam.t_max + at);
         }
         intersect_beam(scene, beam, rays, scratch.beam_hits);
+        take_hits_of(rays, scratch.beam_hits, scratch.hits);
         for (int at = 0; at < beam_rays; at += lanes) {
             const int q = first + at;
             const Mask mine = mask_of_bits(static_cast<std::uint32_t>(rays >> at) & 0xffffu);
-            const auto take = [&](auto* to, auto value) HWY_ATTR { store(select(mine, value, load(to)), to); };
-            take(scratch.hits.t + at, load(scratch.beam_hits.t + at));
-            take(scratch.hits.u + at, load(scratch.beam_hits.u + at));
-            take(scratch.hits.v + at, load(scratch.beam_hits.v + at));
-            take(scratch.hits.id + at, load(scratch.beam_hits.id + at));
-            for (int axis = 0; axis < 3; ++axis) take(queue.origin[axis] + q, Real(beam.origin[axis]));
-            take(queue.length + q, Real(0.0f));
+            for (int axis = 0; axis < 3; ++axis) take(mine, Real(beam.origin[axis]), queue.origin[axis] + q);
+            take(mine, Real(0.0f), queue.length + q);
         }
         done |= rays;
     }

@@ -33,12 +33,6 @@ HWY_INLINE void store3(Vec3 a, float (*p)[beam_rays], int at) {
     store(a.y, p[1] + at);
     store(a.z, p[2] + at);
 }
-HWY_INLINE std::uint32_t lanes_of(std::uint64_t rays, int group) {
-    return static_cast<std::uint32_t>(rays >> (group * lanes)) & 0xffffu;
-}
-HWY_INLINE std::uint64_t rays_of(std::uint32_t lanes_set, int group) {
-    return static_cast<std::uint64_t>(lanes_set) << (group * lanes);
-}
 
 // What each hit of `shade.lit` would receive from a light at `light` if it sees it, per unit of the light's radiance:
 // shade.diffuse and shade.specular; and the shadow rays that tell, from the light to the hits. Returns which of the
@@ -142,16 +136,16 @@ inline bool lie_together(const BeamRays& shadow, std::uint64_t active) {
 inline std::uint64_t shadowed(const CompiledScene& scene, const BeamRays& shadow, std::uint64_t active,
                               bool of_camera_rays) {
     if (of_camera_rays || lie_together(shadow, active)) return occluded_beam(scene, shadow, active);
-    std::uint64_t result = 0;
-    for (; active != 0; active &= active - 1) {
-        const int i = std::countr_zero(active);
-        const Ray ray = {{shadow.origin[0], shadow.origin[1], shadow.origin[2]},
-                         {shadow.direction[0][i], shadow.direction[1][i], shadow.direction[2][i]},
-                         shadow.t_min[i],
-                         shadow.t_max[i]};
-        if (occluded_ray(scene, ray)) result |= std::uint64_t{1} << i;
+    ScatteredRays rays;
+    for (int at = 0; at < beam_rays; at += lanes) {
+        for (int axis = 0; axis < 3; ++axis) {
+            store(Real(shadow.origin[axis]), rays.origin[axis] + at);
+            store(load(shadow.direction[axis] + at), rays.direction[axis] + at);
+        }
+        store(load(shadow.t_min + at), rays.t_min + at);
+        store(load(shadow.t_max + at), rays.t_max + at);
     }
-    return result;
+    return occluded_scattered(scene, rays, active);
 }
 
 // shade.local = light received directly by the hits of shade.lit, attenuated from light to hit to eye.

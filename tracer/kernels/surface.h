@@ -77,7 +77,11 @@ HWY_INLINE SurfaceLanes surface_at(const CompiledScene& scene, const HitLanes& h
     if (any(s.sphere)) {
         const Records records(scene.spheres.data(), s.sphere, hit.id - first_sphere);
         const Vec3 center = records.vector(offsetof(SphereRecord, center));
-        const Vec3 outward = normalize(s.position - center);
+        // A sphere that is smaller than the rounding of its place has hits at its very centre: it faces the ray.
+        const Vec3 away = s.position - center;
+        const Real squared_distance = dot(away, away);
+        const Vec3 outward =
+            select(squared_distance > Real(1e-36f), away * (Real(1.0f) / sqrt(squared_distance)), -hit.direction);
         // Back onto the sphere: the hit distance is good to a few e of the ray's length, the radius is exact.
         s.position =
             select(s.sphere, mul_add(outward, records.real(offsetof(SphereRecord, radius)), center), s.position);

@@ -58,20 +58,22 @@ std::uint64_t make_camera_rays(const SampleContext& c) {
     return active;
 }
 
-// Rays of the queue from `first` on, one by one.
-void intersect_rays(const CompiledScene& scene, const RayQueue& queue, int first, std::uint64_t active,
-                    BeamHits& hits) {
-    for (; active != 0; active &= active - 1) {
-        const int i = std::countr_zero(active), q = first + i;
-        const RayHit hit = intersect_ray(scene, {{queue.origin[0][q], queue.origin[1][q], queue.origin[2][q]},
-                                                 {queue.direction[0][q], queue.direction[1][q], queue.direction[2][q]},
-                                                 0,
-                                                 farthest});
-        hits.t[i] = hit.t;
-        hits.u[i] = hit.u;
-        hits.v[i] = hit.v;
-        hits.id[i] = hit.id;
+// Rays of the queue from `first` on that share no origin; scratch.hits of the others stays.
+void intersect_queued(const CompiledScene& scene, const RayQueue& queue, int first, std::uint64_t active,
+                      TileScratch& scratch) {
+    if (active == 0) return;
+    ScatteredRays& rays = scratch.scattered;
+    for (int at = 0; at < beam_rays; at += lanes) {
+        const int q = first + at;
+        for (int axis = 0; axis < 3; ++axis) {
+            store(load(queue.origin[axis] + q), rays.origin[axis] + at);
+            store(load(queue.direction[axis] + q), rays.direction[axis] + at);
+        }
+        store(Real(0.0f), rays.t_min + at);
+        store(Real(farthest), rays.t_max + at);
     }
+    intersect_scattered(scene, rays, active, scratch.beam_hits);
+    take_hits_of(active, scratch.beam_hits, scratch.hits);
 }
 
 HWY_INLINE HitLanes load_hits(const RayQueue& queue, int first, std::uint64_t active, const BeamHits& hits, int group) {
@@ -202,7 +204,7 @@ void trace_level(const SampleContext& c, int depth) {
         std::uint64_t alone = active;
         if (depth == 1 && c.camera.common_origin)
             alone &= ~intersect_mirrored(*c.job.scene, c.camera.eye, queue, first, active, c.scratch);
-        intersect_rays(*c.job.scene, queue, first, alone, c.scratch.hits);
+        intersect_queued(*c.job.scene, queue, first, alone, c.scratch);
         shade_hits(c, depth, first, active);
     }
 }
@@ -236,7 +238,7 @@ void trace_tile(const TileJob& job, TileScratch& scratch, FilmTile& tile, RayCou
         if (camera.common_origin)
             intersect_beam(*job.scene, scratch.camera_beam, active, scratch.hits);
         else
-            intersect_rays(*job.scene, scratch.queues[0], 0, active, scratch.hits);
+            intersect_queued(*job.scene, scratch.queues[0], 0, active, scratch);
         scratch.queues[1].size = 0;
         shade_hits(c, 0, 0, active);
         for (int depth = 1; depth <= depth_limit && scratch.queues[depth & 1].size > 0; ++depth) trace_level(c, depth);

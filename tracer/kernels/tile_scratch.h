@@ -50,6 +50,7 @@ struct TileScratch {
     RayQueue queues[2];
     ShadeBatch shade;
     BeamRays camera_beam, beam, shadow;
+    ScatteredRays scattered;
     BeamHits hits, beam_hits;
     alignas(64) float radiance[3][beam_rays];  // of the sample at hand
 };

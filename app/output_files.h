@@ -1,0 +1,16 @@
+// The files that a run writes, looked at before the work rather than after it.
+#pragma once
+
+#include "app/options.h"
+#include "tracer/description/scene.h"
+
+namespace raywalk {
+
+// Throws WorkError where a file could not be written, UsageError where two would be the same one.
+void require_writable_outputs(const Options& options);
+
+// Throws UsageError where writing would destroy what the scene is made of.
+void require_no_input(const std::filesystem::path& output, const Scene& scene);
+void require_inputs_kept(const Options& options, const Scene& scene);
+
+}  // namespace raywalk
