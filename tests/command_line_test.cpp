@@ -54,7 +54,7 @@ TEST_F(CommandLine, FloatFormatsHoldRadianceAnd8BitFormatsItsDisplayValues) {
     const Image normalized = pixels("normalized.png"), darker = pixels("darker.png");
     for (int y = 0; y < 48; ++y)
         for (int x = 0; x < 64; ++x) {
-            const auto pixel = static_cast<std::size_t>(y * 64 + x);
+            const std::size_t pixel = std::size_t{64} * y + x;
             const float value = radiance[static_cast<std::size_t>((47 - y) * 64 + x) * 3];
             ASSERT_NEAR(red(normalized.texels[pixel]), 255 * value / std::max(1.0f, largest), 0.51);
             ASSERT_NEAR(red(darker.texels[pixel]), 255 * std::min(1.0f, value / 2), 0.51);
@@ -153,7 +153,7 @@ TEST_F(CommandLine, ProgressIsABarOnATerminalAndWipedOffInTheEnd) {
 TEST_F(CommandLine, ADumbTerminalGetsPlainLines) {
     Process terminal = process({"room.scene", "-render", "picture.png"});
     terminal.terminal_columns = 60;
-    terminal.environment.push_back("TERM=dumb");
+    terminal.environment.emplace_back("TERM=dumb");
     const std::string errors = run(terminal).errors;
     EXPECT_THAT(errors, HasSubstr("100 %"));
     EXPECT_THAT(errors, Not(HasSubstr("\x1b")));

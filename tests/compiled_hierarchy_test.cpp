@@ -158,6 +158,7 @@ TEST(KdTree, IsFarCheaperToTraverseThanOneSplitInTheMiddle) {
         const KdOptions options;
         const Hierarchy hierarchy = build_kd_tree({triangles, {}}, options, &statistics);
         std::vector<Bounds> boxes;
+        boxes.reserve(triangles.size());
         for (const TriangleCorners& t : triangles) boxes.push_back(bounds_of(t));
         const double middle =
             middle_split_cost(hierarchy.bounds, boxes, std::get<KdTree>(hierarchy.tree).depth, options) /

@@ -28,7 +28,7 @@ class TestFolder {
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     // Writes a file below the folder, making its folders; returns its path.
     std::filesystem::path write(const std::filesystem::path& name, std::string_view content) const {
-        const std::filesystem::path file = path_ / name;
+        std::filesystem::path file = path_ / name;
         std::filesystem::create_directories(file.parent_path());
         std::ofstream(file, std::ios::binary) << content;
         return file;

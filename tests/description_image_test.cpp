@@ -86,7 +86,9 @@ TEST(ImageTest, PfmHoldsTheFloatsBottomRowFirst) {
     ASSERT_EQ(bytes.size(), header.size() + 72);
     EXPECT_EQ(bytes.substr(0, header.size()), header);
     for (int y = 0; y < 3; ++y)
-        EXPECT_EQ(std::memcmp(bytes.data() + header.size() + 24 * y, &image.rgb[6 * (2 - y)], 24), 0) << y;
+        EXPECT_EQ(bytes.substr(header.size() + 24 * y, 24),
+                  std::string(reinterpret_cast<const char*>(&image.rgb[6 * (2 - y)]), 24))
+            << y;
 }
 
 TEST(ImageTest, FloatsBeyondTheDisplayAreClampedAndNaNIsBlack) {

@@ -132,7 +132,9 @@ class RandomScene {
         std::string result = std::string(name) + (below(2) ? "\n" : " \t\r\n");
         for (const auto& [property, value] : properties) {
             if (below(4) == 0) result += below(2) ? "\n \n" : "  # " + property + " of something else\n";
-            result += (below(2) ? blank() : "") + property + blank() + value + (below(2) ? "\n" : blank() + "\r\n");
+            if (below(2)) result += blank();
+            result.append(property).append(blank()).append(value);
+            result += below(2) ? "\n" : blank() + "\r\n";
         }
         return result;
     }

@@ -239,8 +239,8 @@ TEST(KernelSamples, FillTheApertureEvenly) {
             ++quadrants[(x[k] > 0 ? 1 : 0) + (y[k] > 0 ? 2 : 0)];
         }
     }
-    EXPECT_NEAR(inner, samples / 2, samples / 100);
-    for (const int in_quadrant : quadrants) EXPECT_NEAR(in_quadrant, samples / 4, samples / 100);
+    EXPECT_NEAR(inner, samples / 2.0, samples / 100.0);
+    for (const int in_quadrant : quadrants) EXPECT_NEAR(in_quadrant, samples / 4.0, samples / 100.0);
 }
 
 TEST(KernelSamples, SquaresCentreIsTheDisksCentre) {

@@ -24,7 +24,7 @@ struct Picture {
 struct PictureOptions {
     std::uint32_t samples = 1, seed = 0;
     bool one_shot = true;
-    std::string_view kernels = "";  // the best where empty
+    std::string_view kernels = {};  // the best where empty
     int threads = 1;
 };
 

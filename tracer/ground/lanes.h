@@ -37,6 +37,7 @@ inline constexpr int registers = lanes / register_lanes;
 // One statement for each register of a value; unrolled, but for the sixteen "registers" of the scalar build, where that
 // would only make the compiler slow.
 #undef RAYWALK_EACH
+// NOLINTBEGIN(bugprone-macro-parentheses): the name that the loop declares
 #if HWY_TARGET == HWY_SCALAR
 #define RAYWALK_EACH(i) \
     HWY_UNROLL(1)       \
@@ -46,6 +47,7 @@ inline constexpr int registers = lanes / register_lanes;
     HWY_UNROLL(4)       \
     for (int i = 0; i < registers; ++i)
 #endif
+// NOLINTEND(bugprone-macro-parentheses)
 
 struct Mask {
     MaskRegister m[registers];
