@@ -32,7 +32,7 @@ fault "negative indices are off by one" tracer/description/obj_chunk.cpp \
     'static_cast<std::uint32_t>(count) - small)' 'static_cast<std::uint32_t>(count) - small + 1)' \
     description_tests 'ObjTest.EveryIndexFormNamesTheSameTriangle'
 fault "polygons are strips" tracer/description/obj_chunk.cpp \
-    'const Corner &b = corners_[i - 1], &c' 'const Corner &b = corners_[1], &c' \
+    'if (count == 0) first = corner;' 'first = previous;' \
     description_tests 'ObjTest.PolygonsAreFansFromTheirFirstCorner'
 
 # Film, camera and walk.
