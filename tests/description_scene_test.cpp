@@ -9,32 +9,11 @@
 #include <span>
 
 #include "tests/description_folder.h"
+#include "tests/description_scene_text.h"
 #include "tracer/description/scene_parser.h"
 
 namespace raywalk {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::string_view viewer = "Viewer\ngeo 64 48\ncenter 0 0 0\ntarget 0 0 -1\nup 0 1 0\nfovy 45\n";
-constexpr std::string_view light = "Light\norigin 0 5 0\ncolor WHITE\nintensity 1\n";
-constexpr std::string_view sphere = "Sphere\ntexture PureTexture PLASTIC RED\ncenter 0 0 -5\nradius 1\n";
-
-Scene parse(std::string_view text, const fs::path& file = "x.scene", const Limits& limits = {}) {
-    std::vector<Diagnostic> warnings;
-    return parse_scene(text, file, limits, warnings);
-}
-
-std::string said_of(std::string_view text, const fs::path& file = "x.scene", const Limits& limits = {}) {
-    try {
-        parse(text, file, limits);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "read";
-}
-
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 // --- a random scene, printed and parsed back ---
 
