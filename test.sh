@@ -43,13 +43,8 @@ lint() {  # the compilation database of the release preset, our own files only
         xargs -0 -r -n 4 -P "$jobs" clang-tidy -p build/release --quiet --warnings-as-errors='*')
 }
 
-# The driver of Vulkan keeps memory until the end.
-suite_under_asan() { ASAN_OPTIONS=detect_leaks=0 suite asan -LE long; }
-# Archer tells the sanitizer what the barriers and tasks of OpenMP order. Memory cannot be limited under it.
-suite_under_tsan() {
-    OMP_TOOL_LIBRARIES=$(ls /usr/lib/llvm-*/lib/libarcher.so | tail -1) TSAN_OPTIONS=ignore_noninstrumented_modules=1 \
-        suite tsan -LE long -E "TooLittleMemory"
-}
+# What is built runs at once, to make the meshes and textures of the scenes.
+build_for_tsan() { TSAN_OPTIONS=ignore_noninstrumented_modules=1 build_with_tests tsan; }
 
 vulkan_driver=$(vulkan_driver_package)
 packages=("${build_packages[@]}" "${test_packages[@]}" ${vulkan_driver:+"$vulkan_driver"})
@@ -65,10 +60,10 @@ else
     stage "build, warnings are errors" build_with_tests release RAYWALK_WERROR=ON
     stage "whole suite" suite release
     stage "build for address and undefined-behaviour sanitizers" build_with_tests asan
-    stage "quick suite under these" suite_under_asan
+    stage "suite under these" "$root/tests/sanitized.sh" "$root/build/asan"
     stage "coverage" "$root/tests/coverage.sh" "$root/build/asan" 95
-    stage "build for the thread sanitizer" build_with_tests tsan
-    stage "quick suite under it" suite_under_tsan
+    stage "build for the thread sanitizer" build_for_tsan
+    stage "suite under it" "$root/tests/sanitized.sh" "$root/build/tsan"
     stage "deliberate faults" "$root/tests/mutations/run.sh"
     stage "fuzzing, a minute for each target" "$root/tests/fuzz/run.sh" 60
     stage "lint" lint

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tests/command_line_fixture.h"
+#include "tracer/ground/sanitized.h"
 
 namespace raywalk {
 namespace {
@@ -140,9 +141,8 @@ TEST_F(CommandLine, AnAbsurdNumberOfThreadsOfTheEnvironmentIsNone) {
 }
 
 TEST_F(CommandLine, TooLittleMemoryEndsWithOneAndAMessage) {
-#if defined(__SANITIZE_ADDRESS__)
-    constexpr const char* size = "64x64";  // the sanitizer's own memory is past every limit: only that it still runs
-    EXPECT_EQ(raywalk({"room.scene", "-render", "picture.png", "--size", size}).exit_code, 0);
+#if RAYWALK_SANITIZED  // whose own memory is past every limit: only that it still runs
+    EXPECT_EQ(raywalk({"room.scene", "-render", "picture.png", "--size", "64x64"}).exit_code, 0);
 #else
     Process process_with_little =
         process({"room.scene", "-render", "picture.png", "--size", "16384x16384", "--threads", "2"});

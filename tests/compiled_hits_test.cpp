@@ -4,11 +4,12 @@
 #include "tests/compiled_naive.h"
 #include "tests/compiled_shapes.h"
 #include "tracer/compiled/hierarchy.h"
+#include "tracer/ground/sanitized.h"
 
 namespace raywalk::testing {
 namespace {
 
-constexpr int rays_per_scene = 24000;  // of each of three hierarchies; 28 scenes: 2 million in all
+constexpr int rays_per_scene = RAYWALK_SANITIZED ? 400 : 24000;  // of each of three hierarchies; 28 scenes: 2 million
 
 // Leaves of one shape: a deep tree even of a small scene.
 KdOptions deep() {

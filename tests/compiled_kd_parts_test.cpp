@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tests/compiled_shapes.h"
+#include "tests/support/repetitions.h"
 #include "tracer/compiled/kd_clip.h"
 #include "tracer/compiled/kd_event.h"
 #include "tracer/compiled/kd_node.h"
@@ -193,7 +194,7 @@ Split naive_best(const std::vector<Bounds>& boxes, const Bounds& cell, const KdO
 
 TEST(KdSweep, FindsTheCheapestOfAllPlanes) {
     Random random(6);
-    for (int trial = 0; trial < 300; ++trial) {
+    for (int trial = 0; trial < test::repetitions(300); ++trial) {
         // Coordinates on a coarse grid in some trials: many events at one position, and flat boxes.
         const bool coarse = trial % 2 == 0;
         std::vector<Bounds> boxes(1 + random.below(trial % 5 == 0 ? 600 : 60));

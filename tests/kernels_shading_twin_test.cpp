@@ -7,6 +7,7 @@
 
 #include "tests/kernels_shading_naive.h"
 #include "tests/kernels_shading_scene.h"
+#include "tests/support/repetitions.h"
 
 namespace raywalk {
 namespace {
@@ -72,7 +73,7 @@ Picture naive_picture(const Scene& scene, const Camera& camera) {
 // which magnifies an error of the direction some ten times.
 TEST(ShadingTwin, RandomScenesLookAsTheFormulasSay) {
     double worst = 0;
-    for (std::uint32_t seed = 0; seed < 24; ++seed) {
+    for (std::uint32_t seed = 0; seed < test::repetitions(24); ++seed) {
         const Scene scene = random_scene(seed);
         const Camera camera = opening_camera(scene.viewer, 60.0 / 44);
         const Picture naive = naive_picture(scene, camera);

@@ -3,6 +3,7 @@
 
 #include <bit>
 
+#include "tests/support/repetitions.h"
 #include "tests/traversal_scenes.h"
 
 namespace raywalk::traversal_test {
@@ -141,7 +142,7 @@ TEST_P(Traversal, FindsTheHitsThatALoopOverAllShapesFinds) {
         const CompiledScene scene = compile_shapes(set, accelerator);
         Random random(7);
         for (int origin = 0; origin < 4; ++origin) {
-            const RayArrays rays = rays_from(origin_in(set, origin, random), 256, random, origin % 2 == 0);
+            const RayArrays rays = rays_from(origin_in(set, origin, random), test::repetitions(256), random, origin % 2 == 0);
             std::vector<Answer> answers(rays.size());
             for (std::size_t i = 0; i < rays.size(); ++i)
                 answers[i] =
@@ -179,7 +180,7 @@ RayArrays rays_at_edges(const ShapeSet& set, glm::vec3 origin, Random& random) {
 TEST_P(Traversal, LetsNoRayOutOfAClosedMesh) {
     const auto [accelerator, kernels] = GetParam();
     Random random(8);
-    const auto check = [&](const ShapeSet& set, const CompiledScene& scene, glm::vec3 origin) {
+    const auto check = [&, kernels = kernels](const ShapeSet& set, const CompiledScene& scene, glm::vec3 origin) {
         const RayArrays rays = rays_at_edges(set, origin, random);
         HitArrays hits(rays.size());
         kernels->intersect(scene, rays, hits);
@@ -226,7 +227,7 @@ TEST(TraversalBits, AreTheSameForBothHierarchiesAndEqualRounding) {
         const CompiledScene kd = compile_shapes(set, Accelerator::kdtree), bvh = compile_shapes(set, Accelerator::bvh);
         Random random(9);
         for (int origin = 0; origin < 6; ++origin) {
-            const RayArrays rays = rays_from(origin_in(set, origin, random), 2048, random, origin % 2 == 0);
+            const RayArrays rays = rays_from(origin_in(set, origin, random), test::repetitions(2048), random, origin % 2 == 0);
             std::vector<HitArrays> of_kernels;
             for (const Kernels* kernels : available_kernels()) {
                 HitArrays single(rays.size()), beam(rays.size()), other(rays.size());

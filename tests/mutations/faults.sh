@@ -4,19 +4,19 @@
 # The trees and their builders.
 fault "the sweep forgets who began" tracer/compiled/kd_sweep.cpp \
     'below += start;' 'below += 1;' \
-    test_hierarchy 'KdSweep.FindsTheCheapestOfAllPlanes'
+    hierarchy_tests 'KdSweep.FindsTheCheapestOfAllPlanes'
 fault "the sweep skips a stretch that holds the best plane" tracer/compiled/kd_sweep.cpp \
     'if (bound <= std::min(cheapest_between, sweep.best.cost))' 'if (bound * 1.2 <= std::min(cheapest_between, sweep.best.cost))' \
-    test_hierarchy 'KdSweep.FindsTheCheapestOfAllPlanes'
+    hierarchy_tests 'KdSweep.FindsTheCheapestOfAllPlanes'
 fault "clipping keeps what is outside" tracer/compiled/kd_clip.cpp \
     'polygon = clipped(polygon, axis, -1, box.upper[axis]);' 'polygon = clipped(polygon, axis, -1, whole.upper[axis]);' \
-    test_hierarchy 'KdClip.IsPerfect*'
+    hierarchy_tests 'KdClip.IsPerfect*'
 fault "clipping loses a bit of a sphere" tracer/compiled/kd_clip.cpp \
     'const double reach = std::sqrt(room) + margin;' 'const double reach = std::sqrt(room) * 0.999;' \
-    test_hierarchy 'KdClip.LosesNoPointOfASpheresSurface'
+    hierarchy_tests 'KdClip.LosesNoPointOfASpheresSurface'
 fault "boxes of a split's sides overlap by a bin" tracer/compiled/bvh_binning.cpp \
     '(i < plane.bin ? lower : upper)' '(i < plane.bin - 1 ? lower : upper)' \
-    test_hierarchy '*Invariants.HoldForTheBvh*'
+    hierarchy_tests '*Invariants.HoldForTheBvh*'
 
 # Parsers.
 fault "numbers may lie below their range" tracer/description/scene_values.cpp \

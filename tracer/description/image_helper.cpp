@@ -17,15 +17,7 @@
 #include "tracer/description/image_codecs.h"
 #include "tracer/description/image_process.h"
 #include "tracer/ground/file_bytes.h"
-
-// The shadow memory of a sanitizer alone is over any limit.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define RAYWALK_SHADOW_MEMORY
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define RAYWALK_SHADOW_MEMORY
-#endif
-#endif
+#include "tracer/ground/sanitized.h"
 
 namespace raywalk {
 
@@ -101,9 +93,7 @@ int run(int count, char** words) {
     const auto format = static_cast<ImageFormat>(number(2));
     if (task == "decode") {
         limit(RLIMIT_CORE, 1);
-#if !defined(RAYWALK_SHADOW_MEMORY)
-        limit(RLIMIT_DATA, number(4));
-#endif
+        if (!RAYWALK_SANITIZED) limit(RLIMIT_DATA, number(4));
         limit(RLIMIT_FSIZE, number(5));
         limit(RLIMIT_CPU, number(6));
     }

@@ -1,7 +1,7 @@
 // Large blocks of `new` lie on large pages. Memory that is touched for the first time costs a page fault, for 4 KB or
 // for 2 MB: where pages are small, faults take half the time from the start to the first picture of a mesh, and
 // incoherent rays wait for the translation of addresses. Vectors everywhere profit; nothing else changes, and what
-// cannot be had is done without. Not replaced under AddressSanitizer, which checks its own.
+// cannot be had is done without. Not replaced under a sanitizer, which checks its own.
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <new>
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#include "tracer/ground/sanitized.h"
+
+#if !RAYWALK_SANITIZED
 
 namespace {
 
