@@ -12,6 +12,7 @@
 #include "app/console.h"
 #include "app/interrupts.h"
 #include "app/output_files.h"
+#include "app/stacks.h"
 
 namespace raywalk {
 
@@ -42,13 +43,15 @@ void keep_standard_streams() {
     _exit(exit_failed);
 }
 
-// OpenMP's threads spin after every parallel region unless told otherwise when its library is loaded, and so take the
-// cores from the threads that show the picture (20 % more processor time with a software Vulkan driver). The variable
-// is set once and the program starts again with it; if that fails it goes on as it is.
+// For what counts only when a program is loaded; if that fails it goes on as it is.
+void start_again(char** arguments) { execv("/proc/self/exe", arguments); }
+
+// OpenMP's threads spin after every parallel region unless told otherwise, and so take the cores from the threads that
+// show the picture (20 % more processor time with a software Vulkan driver).
 void wait_without_spinning(char** arguments) {
     if (std::getenv("OMP_WAIT_POLICY") != nullptr) return;
     setenv("OMP_WAIT_POLICY", "passive", 1);
-    execv("/proc/self/exe", arguments);
+    start_again(arguments);
 }
 
 int run(const Options& options, char** arguments) {
@@ -92,6 +95,7 @@ int main(int count, char** arguments) {
     catch_interrupts();
     std::set_terminate(end_by_terminate);
     try {
+        if (make_room_for_stacks()) start_again(arguments);
         return run(std::vector<std::string>(arguments + std::min(count, 1), arguments + count), arguments);
     } catch (const UsageError& error) {
         print_error(std::string(error.what()) + "\nraywalk --help lists every option");

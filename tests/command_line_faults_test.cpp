@@ -140,6 +140,20 @@ TEST_F(CommandLine, AnAbsurdNumberOfThreadsOfTheEnvironmentIsNone) {
     EXPECT_EQ(read_file(path("a.pfm")), once);
 }
 
+TEST_F(CommandLine, SmallStacksAreMadeLargerOrRefused) {
+    const std::string picture_of_large_stacks = picture({}, "a.pfm");
+    Process small = process({"room.scene", "-render", "a.pfm", "--quiet", "--threads", "2"});
+    for (const char* variable : {"OMP_STACKSIZE=16k", "OMP_STACKSIZE=16", "GOMP_STACKSIZE= 16384 B"}) {
+        small.environment = {variable};
+        EXPECT_EQ(run(small).exit_code, 0) << variable;
+        EXPECT_EQ(read_file(path("a.pfm")), picture_of_large_stacks);
+    }
+    small.stack_limit = std::size_t{64} << 10;
+    const Outcome refused = run(small);
+    EXPECT_EQ(refused.exit_code, 1) << refused.signal;
+    EXPECT_THAT(refused.errors, HasSubstr("the stack is limited to 64 KB, and 1024 KB are needed: ulimit -s 1024"));
+}
+
 TEST_F(CommandLine, TooLittleMemoryEndsWithOneAndAMessage) {
 #if RAYWALK_SANITIZED  // whose own memory is past every limit: only that it still runs
     EXPECT_EQ(raywalk({"room.scene", "-render", "picture.png", "--size", "64x64"}).exit_code, 0);
@@ -216,7 +230,9 @@ TEST_F(CommandLine, AKillAtAnyMomentLeavesTheOldFileOrAWholeNewOne) {
         EXPECT_TRUE(left == old || left == new_picture) << "killed after " << 4 * i << " ms";
         EXPECT_TRUE(outcome.exit_code != 0 || left == new_picture);
     }
-    EXPECT_EQ(files(), 2u) << "something was left behind";
+    const std::vector<fs::path> parts = test::parts_in(folder_.path());
+    for (const fs::path& part : parts) EXPECT_EQ(read_file(part), new_picture) << part;
+    EXPECT_EQ(files(), 2 + parts.size()) << "something else was left behind";
 }
 
 }  // namespace

@@ -140,7 +140,8 @@ TEST_F(CommandLine, ProgressIsALinePerTenPercentWhereThereIsNoTerminal) {
 }
 
 TEST_F(CommandLine, ProgressIsABarOnATerminalAndWipedOffInTheEnd) {
-    Process terminal = process({"room.scene", "-render", "picture.png", "--spp", std::to_string(test::repetitions(3000))});
+    Process terminal =
+        process({"room.scene", "-render", "picture.png", "--spp", std::to_string(test::repetitions(3000))});
     terminal.terminal_columns = 60;
     terminal.environment.insert(terminal.environment.end(), {"TERM=xterm", "NO_COLOR"});
     const std::string errors = run(terminal).errors;

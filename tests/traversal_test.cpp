@@ -142,7 +142,8 @@ TEST_P(Traversal, FindsTheHitsThatALoopOverAllShapesFinds) {
         const CompiledScene scene = compile_shapes(set, accelerator);
         Random random(7);
         for (int origin = 0; origin < 4; ++origin) {
-            const RayArrays rays = rays_from(origin_in(set, origin, random), test::repetitions(256), random, origin % 2 == 0);
+            const RayArrays rays =
+                rays_from(origin_in(set, origin, random), test::repetitions(256), random, origin % 2 == 0);
             std::vector<Answer> answers(rays.size());
             for (std::size_t i = 0; i < rays.size(); ++i)
                 answers[i] =
@@ -227,7 +228,8 @@ TEST(TraversalBits, AreTheSameForBothHierarchiesAndEqualRounding) {
         const CompiledScene kd = compile_shapes(set, Accelerator::kdtree), bvh = compile_shapes(set, Accelerator::bvh);
         Random random(9);
         for (int origin = 0; origin < 6; ++origin) {
-            const RayArrays rays = rays_from(origin_in(set, origin, random), test::repetitions(2048), random, origin % 2 == 0);
+            const RayArrays rays =
+                rays_from(origin_in(set, origin, random), test::repetitions(2048), random, origin % 2 == 0);
             std::vector<HitArrays> of_kernels;
             for (const Kernels* kernels : available_kernels()) {
                 HitArrays single(rays.size()), beam(rays.size()), other(rays.size());

@@ -60,6 +60,7 @@ Ends open_terminal(int columns) {
     };
     set_limit(RLIMIT_AS, process.memory_limit);
     set_limit(RLIMIT_FSIZE, process.file_size_limit);
+    set_limit(RLIMIT_STACK, process.stack_limit);
     if (chdir(process.folder.c_str()) != 0) _exit(126);
     std::vector<char*> words;
     for (const std::string& word : process.words) words.push_back(const_cast<char*>(word.c_str()));
@@ -139,6 +140,13 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
     std::ofstream stream(file, std::ios::binary);
     stream << text;
     if (!stream.flush()) throw std::runtime_error("cannot write " + file.string());
+}
+
+std::vector<std::filesystem::path> parts_in(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> parts;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".part") parts.push_back(entry.path());
+    return parts;
 }
 
 }  // namespace raywalk::test

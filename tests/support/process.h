@@ -18,6 +18,7 @@ struct Process {
     int terminal_columns = 0;               // above 0: stderr is a terminal of this width
     std::size_t memory_limit = 0;           // bytes of address space; 0: none
     std::size_t file_size_limit = 0;        // bytes of a file written; 0: none
+    std::size_t stack_limit = 0;            // bytes; 0: none
     std::function<void(int)> started = {};  // called with the process id
 };
 
@@ -45,5 +46,8 @@ class TemporaryFolder {
 
 std::string read_file(const std::filesystem::path& file);
 void write_file(const std::filesystem::path& file, const std::string& text);
+
+// The files .NAME-PID-N.part of a folder: where a program was killed between naming and renaming a new file.
+std::vector<std::filesystem::path> parts_in(const std::filesystem::path& folder);
 
 }  // namespace raywalk::test

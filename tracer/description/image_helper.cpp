@@ -93,8 +93,10 @@ int run(int count, char** words) {
     const auto format = static_cast<ImageFormat>(number(2));
     if (task == "decode") {
         limit(RLIMIT_CORE, 1);
-        if (!RAYWALK_SANITIZED) limit(RLIMIT_DATA, number(4));
-        limit(RLIMIT_FSIZE, number(5));
+        if (!RAYWALK_SANITIZED) {  // which maps memory of its own and writes down what ran
+            limit(RLIMIT_DATA, number(4));
+            limit(RLIMIT_FSIZE, number(5));
+        }
         limit(RLIMIT_CPU, number(6));
     }
     try {
@@ -115,6 +117,6 @@ int run(int count, char** words) {
 
 int main(int count, char** words) {
     const int code = raywalk::run(count, words);
-    // Nothing is left to say, and 260 libraries have a lot to tidy up.
-    std::_Exit(code);
+    if (RAYWALK_SANITIZED) return code;  // leaks are looked for at a usual end
+    std::_Exit(code);                    // nothing is left to say, and 260 libraries have a lot to tidy up
 }

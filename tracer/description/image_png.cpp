@@ -76,7 +76,10 @@ bool write_all(PngTask& task, png_uint_32 width, png_uint_32 height) {
     png_set_write_fn(task.png, &task, on_write, on_flush);
     png_set_IHDR(task.png, task.info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_compression_level(task.png, 3);  // half the time of the usual 6, a few per cent larger
+    // A quarter of the time of the usual level 6 and five filters, a few per cent larger: a picture of 4096 x 4096 is
+    // saved in a second.
+    png_set_compression_level(task.png, 2);
+    png_set_filter(task.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
     png_write_info(task.png, task.info);
     png_write_image(task.png, task.rows.data());
     png_write_end(task.png, nullptr);

@@ -9,7 +9,8 @@ namespace raywalk {
 
 // Writes a new file beside `file` and renames it to `file` when all of it is on the disk: whatever happens on the way,
 // `file` is the old one or the whole new one. The new file has no name until it is whole (where the file system can),
-// so that a killed program leaves nothing behind. A `file` that is a device or pipe (/dev/null) is written to directly.
+// so that a killed program leaves nothing behind; only between the last two steps, naming and renaming, it leaves the
+// whole new file as .NAME-PID-0.part. A `file` that is a device or pipe (/dev/null) is written to directly.
 // Throws WorkError naming the file and the reason.
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
 

@@ -22,10 +22,10 @@ struct alignas(64) FilmTile {
 };
 
 struct Film {
-    int width = 0, height = 0;           // pixels
-    int tiles_x = 0, tiles_y = 0;        // ceil(size / tile_size); lanes beyond the edge are traced into nothing
-    AlignedVector<FilmTile> tiles;       // row by row
-    std::vector<std::uint32_t> samples;  // per tile: how many are summed
+    int width = 0, height = 0;             // pixels
+    int tiles_x = 0, tiles_y = 0;          // ceil(size / tile_size); lanes beyond the edge are traced into nothing
+    AlignedVector<FilmTile> tiles;         // row by row
+    AlignedVector<std::uint32_t> samples;  // per tile: how many are summed
 
     Film() = default;
     Film(int pixels_wide, int pixels_high) { resize(pixels_wide, pixels_high); }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tracer/rendering/tile_shares.h"
+
 namespace raywalk {
 
 namespace {
@@ -31,43 +33,47 @@ void Renderer::set_view(const View& view) {
     counts_ = {};
 }
 
+// A pixel's samples are added in the order 0, 1, 2, ... whatever the visits and threads: same sums, bit for bit.
+bool Renderer::render_tile(int tile, std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
+                           TileScratch& scratch, RayCounts& counts) {
+    FilmTile& sums = film_.tiles[static_cast<std::size_t>(tile)];
+    std::uint32_t& done = film_.samples[static_cast<std::size_t>(tile)];
+    while (done < samples_per_pixel) {
+        if (cancel.load(std::memory_order_relaxed)) return false;
+        if (done == 0) sums = {};
+        const TileJob job{.scene = scene_,
+                          .camera = &view_.camera,
+                          .settings = view_.settings,
+                          .width = view_.width,
+                          .height = view_.height,
+                          .x = tile % film_.tiles_x * tile_size,
+                          .y = tile / film_.tiles_x * tile_size,
+                          .first_sample = done,
+                          .sample_count = std::min(samples_per_pixel - done, samples_per_visit)};
+        kernels_->trace_tile(job, scratch, sums, counts);
+        done += job.sample_count;
+    }
+    return true;
+}
+
 bool Renderer::render_until(std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
                             const std::function<void(int)>& tile_done) {
-    const int tiles = static_cast<int>(film_.tiles.size());
+    TileShares shares(static_cast<int>(film_.tiles.size()), threads_);
     RayCounts counts;
     bool cancelled = false;
 
 #pragma omp parallel num_threads(threads_)
     {
-        TileScratch& scratch = *scratch_[static_cast<std::size_t>(omp_get_thread_num())];
+        const int thread = omp_get_thread_num();
+        TileScratch& scratch = *scratch_[static_cast<std::size_t>(thread)];
         RayCounts own_counts;
         bool own_cancelled = false;
-#pragma omp for schedule(dynamic) nowait
-        for (int tile = 0; tile < tiles; ++tile) {
-            // A pixel's samples are added in the order 0, 1, 2, ... whatever the visits and threads: same sums, bit
-            // for bit.
-            std::uint32_t& done = film_.samples[static_cast<std::size_t>(tile)];
-            while (done < samples_per_pixel) {
-                if (cancel.load(std::memory_order_relaxed)) {
-                    own_cancelled = true;
-                    break;
-                }
-                FilmTile& sums = film_.tiles[static_cast<std::size_t>(tile)];
-                if (done == 0) sums = {};
-                const TileJob job{.scene = scene_,
-                                  .camera = &view_.camera,
-                                  .settings = view_.settings,
-                                  .width = view_.width,
-                                  .height = view_.height,
-                                  .x = tile % film_.tiles_x * tile_size,
-                                  .y = tile / film_.tiles_x * tile_size,
-                                  .first_sample = done,
-                                  .sample_count = std::min(samples_per_pixel - done, samples_per_visit)};
-                kernels_->trace_tile(job, scratch, sums, own_counts);
-                done += job.sample_count;
-                if (done >= samples_per_pixel && tile_done) tile_done(tile);
+        for (auto tiles = shares.take(thread); tiles.begin < tiles.end && !own_cancelled; tiles = shares.take(thread))
+            for (int tile = tiles.begin; tile < tiles.end && !own_cancelled; ++tile) {
+                const bool had_all = film_.samples[static_cast<std::size_t>(tile)] >= samples_per_pixel;
+                own_cancelled = !render_tile(tile, samples_per_pixel, cancel, scratch, own_counts);
+                if (!had_all && !own_cancelled && tile_done) tile_done(tile);
             }
-        }
 #pragma omp critical
         {
             counts += own_counts;

@@ -42,6 +42,10 @@ class Renderer {
     [[nodiscard]] const Kernels& kernels() const { return *kernels_; }
 
   private:
+    // False when `cancel` was set before the tile had all its samples.
+    bool render_tile(int tile, std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel, TileScratch& scratch,
+                     RayCounts& counts);
+
     const CompiledScene* scene_;
     const Kernels* kernels_;
     int threads_;
