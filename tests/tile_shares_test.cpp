@@ -22,6 +22,7 @@ TEST(TileShares, EachTileIsTakenOnceHoweverManyTakeThem) {
             TileShares shares(tiles, threads);
             std::vector<std::atomic<int>> times(static_cast<std::size_t>(tiles));
             std::vector<std::thread> all;
+            all.reserve(static_cast<std::size_t>(threads));
             for (int thread = 0; thread < threads; ++thread)
                 all.emplace_back([&, thread] {
                     for (const int tile : taken_by(shares, thread)) ++times[static_cast<std::size_t>(tile)];

@@ -301,7 +301,8 @@ Findings measure_growth(const Setting& setting) {
 
 // A scene of the mesh alone on a floor, as a file.
 fs::path write_scene_of(const fs::path& mesh, const fs::path& folder) {
-    const fs::path copy = folder / mesh.filename(), file = folder / (mesh.stem().string() + ".scene");
+    const fs::path copy = folder / mesh.filename();
+    fs::path file = folder / (mesh.stem().string() + ".scene");
     fs::copy_file(mesh, copy, fs::copy_options::overwrite_existing);
     std::ofstream(file) << "Viewer\ngeo 1280 720\ncenter -1 4.5 14\ntarget 0 2 0\nup 0 1 0\nfovy 45\n"
                            "Light\norigin -6 12 8\ncolor WHITE\nintensity 0.8\n"
