@@ -110,8 +110,8 @@ std::uint64_t occluded(const CompiledScene& scene, const Rays& rays, std::uint64
 void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits& hits) {
     intersect(scene, rays, active, true, hits);
 }
-std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active) {
-    return occluded(scene, rays, active, true);
+std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, bool together) {
+    return occluded(scene, rays, active, together);
 }
 void intersect_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active, BeamHits& hits) {
     intersect(scene, rays, active, false, hits);

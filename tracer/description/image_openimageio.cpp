@@ -138,7 +138,9 @@ std::string encode(ImageFormat format, OIIO::ImageSpec spec, const void* rgb, st
         OIIO::Filesystem::IOVecOutput memory(bytes);
         OIIO::Filesystem::IOProxy* proxy = &memory;
         spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-        if (format == ImageFormat::exr || format == ImageFormat::tiff) spec.attribute("compression", "zip");
+        // Lossless, and of floats in half the time of the usual zip or less: a picture that is interrupted is waited for.
+        if (format == ImageFormat::exr) spec.attribute("compression", "piz");
+        if (format == ImageFormat::tiff) spec.attribute("compression", "lzw");
         if (!output->open("image", spec) || !output->write_image(spec.format, rgb) || !output->close())
             return first_line(output->geterror());
         return {};

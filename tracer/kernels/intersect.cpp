@@ -135,7 +135,7 @@ void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint6
     if (!hierarchy_is_empty(scene)) trace_beams<false>(scene, rays, active, 0, &hits);
 }
 
-std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active) {
+std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, bool together) {
     std::uint64_t blocked = 0;
     if (scene.plane_count > 0) {
         for (int g = 0; g < beam_groups; ++g) {
@@ -148,7 +148,9 @@ std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, st
         blocked &= active;
     }
     if (hierarchy_is_empty(scene)) return blocked;
-    return blocked | trace_beams<true>(scene, rays, active & ~blocked, 0, nullptr);
+    active &= ~blocked;
+    return blocked | (together ? trace_beams<true>(scene, rays, active, 0, nullptr)
+                               : trace_stream<true>(scene, rays, active, nullptr));
 }
 
 void intersect_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active, BeamHits& hits) {

@@ -22,8 +22,9 @@ namespace HWY_NAMESPACE {
 // Nearest hits of the `active` rays (bit l: ray l) of a beam; the other lanes of `hits` become misses.
 void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits& hits);
 
-// Which of the `active` rays meet anything at t in (t_min, t_max).
-std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active);
+// Which of the `active` rays meet anything at t in (t_min, t_max). `together`: many go nearly one way, so that beams
+// pay off; the answer is the same.
+std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, bool together);
 
 // The same for rays that share neither origin nor direction.
 void intersect_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active, BeamHits& hits);

@@ -109,8 +109,9 @@ void occlude_array(const CompiledScene& scene, const RayArrays& rays, HitArrays&
 }
 
 void occlude_array_as_beams(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    occlude_all<BeamRays>(rays, hits, fill_beam,
-                          [&](const auto& some, std::uint64_t active) { return occluded_beam(scene, some, active); });
+    occlude_all<BeamRays>(rays, hits, fill_beam, [&](const auto& some, std::uint64_t active) {
+        return occluded_beam(scene, some, active, true);
+    });
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ inline LightChoice choose_points(const LightGroup& group, const SampleSettings& 
 }
 
 // Whether the ends of the active shadow rays lie near each other as the light sees them: beams pay off then,
-// measured 1.45 times as fast behind a planar mirror; off curved mirrors single rays are, 1.25 times.
+// measured 1.45 times as fast behind a planar mirror; off curved mirrors a stream is, 1.25 times.
 inline bool lie_together(const BeamRays& shadow, std::uint64_t active) {
     float extent = 0, reach = 0;
     for (const auto& along : shadow.direction) {
@@ -132,23 +132,8 @@ inline bool lie_together(const BeamRays& shadow, std::uint64_t active) {
     return extent <= 0.25f * reach;
 }
 
-// Which of the active shadow rays meet anything. `of_camera_rays`: they go to the hits of a tile's camera rays.
-inline std::uint64_t shadowed(const CompiledScene& scene, const BeamRays& shadow, std::uint64_t active,
-                              bool of_camera_rays) {
-    if (of_camera_rays || lie_together(shadow, active)) return occluded_beam(scene, shadow, active);
-    ScatteredRays rays;
-    for (int at = 0; at < beam_rays; at += lanes) {
-        for (int axis = 0; axis < 3; ++axis) {
-            store(Real(shadow.origin[axis]), rays.origin[axis] + at);
-            store(load(shadow.direction[axis] + at), rays.direction[axis] + at);
-        }
-        store(load(shadow.t_min + at), rays.t_min + at);
-        store(load(shadow.t_max + at), rays.t_max + at);
-    }
-    return occluded_scattered(scene, rays, active);
-}
-
 // shade.local = light received directly by the hits of shade.lit, attenuated from light to hit to eye.
+// `of_camera_rays`: they are the hits of a tile's camera rays.
 inline void light_hits(const CompiledScene& scene, const SampleSettings& settings, std::uint32_t sample,
                        bool of_camera_rays, ShadeBatch& shade, BeamRays& shadow, RayCounts& counts) {
     for (int at = 0; at < beam_rays; at += lanes) {
@@ -169,7 +154,8 @@ inline void light_hits(const CompiledScene& scene, const SampleSettings& setting
             const std::uint64_t receiving = face_light(points[point.cell].position, shade, shadow);
             if (receiving == 0) continue;
             counts.shadow += static_cast<std::uint64_t>(std::popcount(receiving));
-            const std::uint64_t seeing = receiving & ~shadowed(scene, shadow, receiving, of_camera_rays);
+            const bool together = of_camera_rays || lie_together(shadow, receiving);
+            const std::uint64_t seeing = receiving & ~occluded_beam(scene, shadow, receiving, together);
             if (seeing == 0) continue;
             receive(seeing, point.cells, shade);
             received = true;
