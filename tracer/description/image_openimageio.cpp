@@ -138,7 +138,7 @@ std::string encode(ImageFormat format, OIIO::ImageSpec spec, const void* rgb, st
         OIIO::Filesystem::IOVecOutput memory(bytes);
         OIIO::Filesystem::IOProxy* proxy = &memory;
         spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-        // Lossless, and of floats in half the time of the usual zip or less: a picture that is interrupted is waited for.
+        // Lossless as zip is, in about half its time: somebody who interrupted a picture waits for it.
         if (format == ImageFormat::exr) spec.attribute("compression", "piz");
         if (format == ImageFormat::tiff) spec.attribute("compression", "lzw");
         if (!output->open("image", spec) || !output->write_image(spec.format, rgb) || !output->close())
