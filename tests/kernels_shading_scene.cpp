@@ -50,6 +50,10 @@ Viewer viewer_along_z(int width, int height, double fovy_degrees) {
     return viewer;
 }
 
+Light white_light(const glm::dvec3& origin, double intensity) {
+    return {.origin = origin, .color = glm::dvec3(1), .intensity = intensity, .area = {}};
+}
+
 Texture surface(const glm::dvec3& color, const Material& material) {
     return {.material = material, .pattern = PureTexture{color}};
 }

@@ -36,6 +36,8 @@ Picture picture_of(const Scene& scene, const PictureOptions& options = {});
 
 // A viewer at the origin that looks along -z.
 Viewer viewer_along_z(int width, int height, double fovy_degrees);
+// A light of one point.
+Light white_light(const glm::dvec3& origin, double intensity = 1);
 // A surface of one colour, with coefficients of its own choice.
 Texture surface(const glm::dvec3& color, const Material& material);
 inline constexpr Material matte = {"matte", 0, 0, 0, 0, 0};

@@ -70,9 +70,9 @@ bool Renderer::render_until(std::uint32_t samples_per_pixel, const std::atomic<b
         bool own_cancelled = false;
         for (auto tiles = shares.take(thread); tiles.begin < tiles.end && !own_cancelled; tiles = shares.take(thread))
             for (int tile = tiles.begin; tile < tiles.end && !own_cancelled; ++tile) {
-                const bool had_all = film_.samples[static_cast<std::size_t>(tile)] >= samples_per_pixel;
+                if (film_.samples[static_cast<std::size_t>(tile)] >= samples_per_pixel) continue;
                 own_cancelled = !render_tile(tile, samples_per_pixel, cancel, scratch, own_counts);
-                if (!had_all && !own_cancelled && tile_done) tile_done(tile);
+                if (!own_cancelled && tile_done) tile_done(tile);
             }
 #pragma omp critical
         {
