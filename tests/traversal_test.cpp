@@ -74,8 +74,8 @@ Answer naive_answer(const ShapeSet& set, glm::dvec3 o, glm::dvec3 d, double t_ma
 }
 
 // Rays of one common origin, so that both doors may take them; `narrow`: as from pixels of a picture.
-RayArrays rays_from(glm::vec3 origin, std::size_t count, Random& random, bool narrow) {
-    RayArrays rays(count);
+RayBlocks rays_from(glm::vec3 origin, std::size_t count, Random& random, bool narrow) {
+    RayBlocks rays(count);
     glm::vec3 direction = random.direction();
     for (std::size_t i = 0; i < count; ++i) {
         if (i % 64 == 0) direction = random.direction();
@@ -83,8 +83,8 @@ RayArrays rays_from(glm::vec3 origin, std::size_t count, Random& random, bool na
         if (!narrow) d *= random.between(0.2f, 3.0f);  // a statement of its own: every compiler draws in this order
         if (i % 16 == 3) d[i / 16 % 3] = 0;            // in the plane of an axis
         if (i % 64 == 7) d = {0, 0, 0}, d[i / 64 % 3] = i % 128 < 64 ? 1.0f : -1.0f;  // along an axis
-        for (int a = 0; a < 3; ++a) rays.origin[a][i] = origin[a], rays.direction[a][i] = d[a];
-        if (i % 5 == 4) rays.t_max[i] = random.between(0.5f, 15.0f);
+        for (int a = 0; a < 3; ++a) rays.origin(a, i) = origin[a], rays.direction(a, i) = d[a];
+        if (i % 5 == 4) rays.t_max(i) = random.between(0.5f, 15.0f);
     }
     return rays;
 }
@@ -115,17 +115,17 @@ std::vector<Case> all_cases() {
     return cases;
 }
 
-void check_hits(const ShapeSet& set, const RayArrays& rays, const HitArrays& hits, const std::vector<Answer>& answers) {
+void check_hits(const ShapeSet& set, const RayBlocks& rays, const HitBlocks& hits, const std::vector<Answer>& answers) {
     int wrong = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Answer& answer = answers[i];
-        if (hits.id[i] < 0) {
+        if (hits.id(i) < 0) {
             wrong += answer.certain < std::numeric_limits<double>::infinity();
             continue;
         }
-        const double t = hits.t[i], doubt = 2e-4 * std::max(1.0, std::fabs(t));
-        const glm::dvec3 direction = {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
-        const glm::dvec3 point = glm::dvec3(rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]) + t * direction;
+        const double t = hits.t(i), doubt = 2e-4 * std::max(1.0, std::fabs(t));
+        const glm::dvec3 direction = {rays.direction(0, i), rays.direction(1, i), rays.direction(2, i)};
+        const glm::dvec3 point = glm::dvec3(rays.origin(0, i), rays.origin(1, i), rays.origin(2, i)) + t * direction;
         const bool exists =
             std::ranges::any_of(answer.possible, [&](double p) { return std::fabs(p - t) < doubt; }) ||
             std::ranges::any_of(answer.slivers, [&](const TriangleCorners* triangle) {
@@ -142,14 +142,14 @@ TEST_P(Traversal, FindsTheHitsThatALoopOverAllShapesFinds) {
         const CompiledScene scene = compile_shapes(set, accelerator);
         Random random(7);
         for (int origin = 0; origin < 4; ++origin) {
-            const RayArrays rays =
+            const RayBlocks rays =
                 rays_from(origin_in(set, origin, random), test::repetitions(256), random, origin % 2 == 0);
             std::vector<Answer> answers(rays.size());
             for (std::size_t i = 0; i < rays.size(); ++i)
                 answers[i] =
-                    naive_answer(set, {rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
-                                 {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]}, rays.t_max[i]);
-            HitArrays single(rays.size()), beam(rays.size()), blocked(rays.size()), beam_blocked(rays.size());
+                    naive_answer(set, {rays.origin(0, i), rays.origin(1, i), rays.origin(2, i)},
+                                 {rays.direction(0, i), rays.direction(1, i), rays.direction(2, i)}, rays.t_max(i));
+            HitBlocks single(rays.size()), beam(rays.size()), blocked(rays.size()), beam_blocked(rays.size());
             kernels->intersect(scene, rays, single);
             kernels->intersect_beam(scene, rays, beam);
             check_hits(set, rays, single, answers);
@@ -158,8 +158,8 @@ TEST_P(Traversal, FindsTheHitsThatALoopOverAllShapesFinds) {
             kernels->occluded_beam(scene, rays, beam_blocked);
             int disagree = 0;
             for (std::size_t i = 0; i < rays.size(); ++i) {
-                disagree += (blocked.id[i] == 0) != (single.id[i] >= 0);
-                disagree += (beam_blocked.id[i] == 0) != (beam.id[i] >= 0);
+                disagree += (blocked.id(i) == 0) != (single.id(i) >= 0);
+                disagree += (beam_blocked.id(i) == 0) != (beam.id(i) >= 0);
             }
             EXPECT_EQ(disagree, 0) << "any hit against nearest hit in " << set.name;
         }
@@ -167,27 +167,33 @@ TEST_P(Traversal, FindsTheHitsThatALoopOverAllShapesFinds) {
 }
 
 // Rays at every corner and at points on every edge of a closed mesh, exactly where a crack would be.
-RayArrays rays_at_edges(const ShapeSet& set, glm::vec3 origin, Random& random) {
-    RayArrays rays(2 * set.triangles.size());
+RayBlocks rays_at_edges(const ShapeSet& set, glm::vec3 origin, Random& random) {
+    RayBlocks rays(2 * set.triangles.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto& p = set.triangles[i / 2].p;
         const float s = i % 2 == 0 ? 1.0f : random.between(0, 1);
         const glm::vec3 target = p[0] * s + p[1] * (1 - s);
-        for (int a = 0; a < 3; ++a) rays.origin[a][i] = origin[a], rays.direction[a][i] = target[a] - origin[a];
+        for (int a = 0; a < 3; ++a) rays.origin(a, i) = origin[a], rays.direction(a, i) = target[a] - origin[a];
     }
     return rays;
+}
+
+int misses(const HitBlocks& hits) {
+    int missed = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) missed += hits.id(i) < 0;
+    return missed;
 }
 
 TEST_P(Traversal, LetsNoRayOutOfAClosedMesh) {
     const auto [accelerator, kernels] = GetParam();
     Random random(8);
     const auto check = [&, kernels = kernels](const ShapeSet& set, const CompiledScene& scene, glm::vec3 origin) {
-        const RayArrays rays = rays_at_edges(set, origin, random);
-        HitArrays hits(rays.size());
+        const RayBlocks rays = rays_at_edges(set, origin, random);
+        HitBlocks hits(rays.size());
         kernels->intersect(scene, rays, hits);
-        EXPECT_EQ(std::ranges::count(hits.id, -1), 0) << "single rays";
+        EXPECT_EQ(misses(hits), 0) << "single rays";
         kernels->intersect_beam(scene, rays, hits);
-        EXPECT_EQ(std::ranges::count(hits.id, -1), 0) << "beams";
+        EXPECT_EQ(misses(hits), 0) << "beams";
     };
     const ShapeSet set{.name = "closed", .triangles = icosphere(4)};
     const CompiledScene scene = compile_shapes(set, accelerator);
@@ -200,13 +206,13 @@ TEST_P(Traversal, LetsNoRayOutOfAClosedMesh) {
     const CompiledScene fine_scene = compile_shapes(fine, accelerator);
     check(fine, fine_scene, glm::vec3(5, 3, -4));
     // From far away through the middle: what enters has to meet the far side at the latest.
-    const RayArrays rays = rays_at_edges(fine, {0, 0, 0}, random);
-    RayArrays inner = rays;
+    const RayBlocks rays = rays_at_edges(fine, {0, 0, 0}, random);
+    RayBlocks inner = rays;
     for (std::size_t i = 0; i < rays.size(); ++i)
-        for (int a = 0; a < 3; ++a) inner.direction[a][i] = 0.8f * rays.direction[a][i] + 0.2f * glm::vec3(5, 3, -4)[a];
-    HitArrays hits(rays.size());
+        for (int a = 0; a < 3; ++a) inner.direction(a, i) = 0.8f * rays.direction(a, i) + 0.2f * glm::vec3(5, 3, -4)[a];
+    HitBlocks hits(rays.size());
     kernels->intersect(fine_scene, inner, hits);
-    EXPECT_EQ(std::ranges::count(hits.id, -1), 0) << "from far away";
+    EXPECT_EQ(misses(hits), 0) << "from far away";
 }
 
 INSTANTIATE_TEST_SUITE_P(AllKernels, Traversal, testing::ValuesIn(all_cases()), [](const auto& named) {
@@ -214,11 +220,11 @@ INSTANTIATE_TEST_SUITE_P(AllKernels, Traversal, testing::ValuesIn(all_cases()), 
            std::string(named.param.kernels->name);
 });
 
-void expect_same_bits(const HitArrays& a, const HitArrays& b, const std::string& what) {
+void expect_same_bits(const HitBlocks& a, const HitBlocks& b, const std::string& what) {
     int differ = 0;
-    for (std::size_t i = 0; i < a.t.size(); ++i)
-        differ += a.id[i] != b.id[i] || std::bit_cast<std::uint32_t>(a.t[i]) != std::bit_cast<std::uint32_t>(b.t[i]) ||
-                  (a.id[i] >= 0 && (a.u[i] != b.u[i] || a.v[i] != b.v[i]));
+    for (std::size_t i = 0; i < a.size(); ++i)
+        differ += a.id(i) != b.id(i) || std::bit_cast<std::uint32_t>(a.t(i)) != std::bit_cast<std::uint32_t>(b.t(i)) ||
+                  (a.id(i) >= 0 && (a.u(i) != b.u(i) || a.v(i) != b.v(i)));
     EXPECT_EQ(differ, 0) << what;
 }
 
@@ -228,11 +234,11 @@ TEST(TraversalBits, AreTheSameForBothHierarchiesAndEqualRounding) {
         const CompiledScene kd = compile_shapes(set, Accelerator::kdtree), bvh = compile_shapes(set, Accelerator::bvh);
         Random random(9);
         for (int origin = 0; origin < 6; ++origin) {
-            const RayArrays rays =
+            const RayBlocks rays =
                 rays_from(origin_in(set, origin, random), test::repetitions(2048), random, origin % 2 == 0);
-            std::vector<HitArrays> of_kernels;
+            std::vector<HitBlocks> of_kernels;
             for (const Kernels* kernels : available_kernels()) {
-                HitArrays single(rays.size()), beam(rays.size()), other(rays.size());
+                HitBlocks single(rays.size()), beam(rays.size()), other(rays.size());
                 kernels->intersect(kd, rays, single);
                 kernels->intersect(bvh, rays, other);
                 expect_same_bits(single, other, "single rays, kd-tree against BVH, " + set.name);
@@ -259,34 +265,31 @@ TEST(TraversalBits, DoNotDependOnTheCompanyOfARay) {
     for (const ShapeSet& set : all_shape_sets()) {
         const CompiledScene scene = compile_shapes(set, Accelerator::bvh);
         Random random(10);
-        RayArrays rays(256);
+        RayBlocks rays(256);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const glm::vec3 origin = origin_in(set, static_cast<int>(i % 8), random), direction = random.direction();
-            for (int a = 0; a < 3; ++a) rays.origin[a][i] = origin[a], rays.direction[a][i] = direction[a];
+            for (int a = 0; a < 3; ++a) rays.origin(a, i) = origin[a], rays.direction(a, i) = direction[a];
         }
         for (const Kernels* kernels : available_kernels()) {
-            HitArrays together(rays.size()), shuffled(rays.size()), alone(rays.size());
+            HitBlocks together(rays.size()), shuffled(rays.size()), alone(rays.size());
             kernels->intersect(scene, rays, together);
-            const auto copy_ray = [&](std::size_t from, RayArrays& to, std::size_t i) {
+            const auto copy_ray = [&](std::size_t from, RayBlocks& to, std::size_t i) {
                 for (int a = 0; a < 3; ++a)
-                    to.origin[a][i] = rays.origin[a][from], to.direction[a][i] = rays.direction[a][from];
-            };
-            const auto copy_hit = [](const HitArrays& from, std::size_t i, HitArrays& to, std::size_t at) {
-                to.t[at] = from.t[i], to.u[at] = from.u[i], to.v[at] = from.v[i], to.id[at] = from.id[i];
+                    to.origin(a, i) = rays.origin(a, from), to.direction(a, i) = rays.direction(a, from);
             };
             const auto place = [&](std::size_t i) { return (i * 37 + 11) % rays.size(); };  // a permutation
-            RayArrays others(rays.size());
-            HitArrays found(rays.size());
+            RayBlocks others(rays.size());
+            HitBlocks found(rays.size());
             for (std::size_t i = 0; i < rays.size(); ++i) copy_ray(i, others, place(i));
             kernels->intersect(scene, others, found);
-            for (std::size_t i = 0; i < rays.size(); ++i) copy_hit(found, place(i), shuffled, i);
+            for (std::size_t i = 0; i < rays.size(); ++i) shuffled.set(i, found.hit(place(i)));
             expect_same_bits(together, shuffled, "in another order, " + set.name);
-            RayArrays one(1);
-            HitArrays own(1);
+            RayBlocks one(1);
+            HitBlocks own(1);
             for (std::size_t i = 0; i < rays.size(); ++i) {
                 copy_ray(i, one, 0);
                 kernels->intersect(scene, one, own);
-                copy_hit(own, 0, alone, i);
+                alone.set(i, own.hit(0));
             }
             expect_same_bits(together, alone, "alone, " + set.name);
         }

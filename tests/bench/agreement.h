@@ -21,6 +21,6 @@ struct Agreement {
 };
 
 // Rays agree when both hit nothing, the same shape, or something equally far away (shapes share edges).
-Agreement compare(const Geometry& geometry, const RaySet& set, const HitArrays& theirs, const HitArrays& ours);
+Agreement compare(const Geometry& geometry, const RaySet& set, const HitBlocks& theirs, const HitBlocks& ours);
 
 }  // namespace raywalk::bench

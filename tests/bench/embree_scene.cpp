@@ -54,43 +54,41 @@ void attach_spheres(RTCDevice device, RTCScene scene, const std::vector<SphereSh
     rtcReleaseGeometry(g);
 }
 
-template <int width>
-void copy(const std::vector<float>& from, std::size_t first, float* to) {
-    std::memcpy(to, from.data() + first, width * sizeof(float));
-}
-
 // What stays the same from packet to packet.
 template <int width>
-void prepare(const RayArrays& rays, RTCRayNt<width>& packet) {
+void prepare(const RayBlocks& rays, RTCRayNt<width>& packet) {
     for (int i = 0; i < width; ++i) {
-        packet.org_x[i] = rays.origin[0][0];
-        packet.org_y[i] = rays.origin[1][0];
-        packet.org_z[i] = rays.origin[2][0];
+        packet.org_x[i] = rays.origin(0, 0);
+        packet.org_y[i] = rays.origin(1, 0);
+        packet.org_z[i] = rays.origin(2, 0);
         packet.time[i] = 0;
         packet.mask[i] = ~0u;
         packet.flags[i] = 0;
     }
 }
 
-// Rays [first, first + width); returns whether any is to be traced.
+// Lanes [lane, lane + width) of a block; returns whether any is to be traced.
 template <int width>
-bool fill(const RayArrays& rays, bool common_origin, std::size_t first, RTCRayNt<width>& packet, int* valid) {
+bool fill(const ScatteredRays& block, bool common_origin, std::size_t lane, RTCRayNt<width>& packet, int* valid) {
     int any = 0;
     for (std::size_t i = 0; i < width; ++i) {
-        valid[i] = rays.t_max[first + i] > rays.t_min[first + i] ? -1 : 0;
+        valid[i] = block.t_max[lane + i] > block.t_min[lane + i] ? -1 : 0;
         any |= valid[i];
     }
     if (any == 0) return false;
+    const auto copy = [lane](const float(&from)[beam_rays], float* to) {
+        std::memcpy(to, from + lane, width * sizeof(float));
+    };
     if (!common_origin) {
-        copy<width>(rays.origin[0], first, packet.org_x);
-        copy<width>(rays.origin[1], first, packet.org_y);
-        copy<width>(rays.origin[2], first, packet.org_z);
+        copy(block.origin[0], packet.org_x);
+        copy(block.origin[1], packet.org_y);
+        copy(block.origin[2], packet.org_z);
     }
-    copy<width>(rays.direction[0], first, packet.dir_x);
-    copy<width>(rays.direction[1], first, packet.dir_y);
-    copy<width>(rays.direction[2], first, packet.dir_z);
-    copy<width>(rays.t_min, first, packet.tnear);
-    copy<width>(rays.t_max, first, packet.tfar);
+    copy(block.direction[0], packet.dir_x);
+    copy(block.direction[1], packet.dir_y);
+    copy(block.direction[2], packet.dir_z);
+    copy(block.t_min, packet.tnear);
+    copy(block.t_max, packet.tfar);
     return true;
 }
 
@@ -107,53 +105,57 @@ RTCIntersectContext context_of(EmbreeCall call) {
 }
 
 template <int width>
-void intersect_packets(RTCScene scene, std::int32_t triangle_count, EmbreeCall call, const RayArrays& rays,
-                       HitArrays& hits) {
+void intersect_packets(RTCScene scene, std::int32_t triangle_count, EmbreeCall call, const RayBlocks& rays,
+                       HitBlocks& hits) {
     RTCIntersectContext context = context_of(call);
     alignas(64) RTCRayHitNt<width> packet;
     alignas(64) int valid[width];
     prepare<width>(rays, packet.ray);
     for (std::size_t first = 0; first < rays.size(); first += width) {
-        if (!fill<width>(rays, call.common_origin, first, packet.ray, valid)) continue;
+        const std::size_t lane = first % beam_rays;
+        if (!fill<width>(rays.blocks()[first / beam_rays], call.common_origin, lane, packet.ray, valid)) continue;
         for (int i = 0; i < width; ++i) packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         if constexpr (width == 8)
             rtcIntersect8(valid, scene, &context, reinterpret_cast<RTCRayHit8*>(&packet));
         else
             rtcIntersect16(valid, scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
-        std::memcpy(hits.t.data() + first, packet.ray.tfar, sizeof packet.ray.tfar);
-        std::memcpy(hits.u.data() + first, packet.hit.u, sizeof packet.hit.u);
-        std::memcpy(hits.v.data() + first, packet.hit.v, sizeof packet.hit.v);
+        BeamHits& found = hits.blocks()[first / beam_rays];
+        std::memcpy(found.t + lane, packet.ray.tfar, sizeof packet.ray.tfar);
+        std::memcpy(found.u + lane, packet.hit.u, sizeof packet.hit.u);
+        std::memcpy(found.v + lane, packet.hit.v, sizeof packet.hit.v);
         for (std::size_t i = 0; i < width; ++i)
-            hits.id[first + i] = shape_id(packet.hit.geomID[i], packet.hit.primID[i], triangle_count);
+            found.id[lane + i] = shape_id(packet.hit.geomID[i], packet.hit.primID[i], triangle_count);
     }
 }
 
 template <int width>
-void occlude_packets(RTCScene scene, EmbreeCall call, const RayArrays& rays, HitArrays& hits) {
+void occlude_packets(RTCScene scene, EmbreeCall call, const RayBlocks& rays, HitBlocks& hits) {
     RTCIntersectContext context = context_of(call);
     alignas(64) RTCRayNt<width> packet;
     alignas(64) int valid[width];
     prepare<width>(rays, packet);
     for (std::size_t first = 0; first < rays.size(); first += width) {
-        if (!fill<width>(rays, call.common_origin, first, packet, valid)) continue;
+        const std::size_t lane = first % beam_rays;
+        if (!fill<width>(rays.blocks()[first / beam_rays], call.common_origin, lane, packet, valid)) continue;
         if constexpr (width == 8)
             rtcOccluded8(valid, scene, &context, reinterpret_cast<RTCRay8*>(&packet));
         else
             rtcOccluded16(valid, scene, &context, reinterpret_cast<RTCRay16*>(&packet));
-        for (std::size_t i = 0; i < width; ++i) hits.id[first + i] = packet.tfar[i] < 0 ? 0 : -1;
+        BeamHits& found = hits.blocks()[first / beam_rays];
+        for (std::size_t i = 0; i < width; ++i) found.id[lane + i] = packet.tfar[i] < 0 ? 0 : -1;
     }
 }
 
-RTCRay single_ray(const RayArrays& rays, std::size_t i) {
-    return {rays.origin[0][i],
-            rays.origin[1][i],
-            rays.origin[2][i],
-            rays.t_min[i],
-            rays.direction[0][i],
-            rays.direction[1][i],
-            rays.direction[2][i],
+RTCRay single_ray(const RayBlocks& rays, std::size_t i) {
+    return {rays.origin(0, i),
+            rays.origin(1, i),
+            rays.origin(2, i),
+            rays.t_min(i),
+            rays.direction(0, i),
+            rays.direction(1, i),
+            rays.direction(2, i),
             0,
-            rays.t_max[i],
+            rays.t_max(i),
             ~0u,
             0,
             0};
@@ -208,34 +210,31 @@ std::string to_string(const EmbreeCall& call, bool any_hit) {
                             : " incoherent");
 }
 
-void intersect(RTCScene scene, std::int32_t triangle_count, EmbreeCall call, const RayArrays& rays, HitArrays& hits) {
+void intersect(RTCScene scene, std::int32_t triangle_count, EmbreeCall call, const RayBlocks& rays, HitBlocks& hits) {
     const FlushDenormals flush;
     if (call.width == 8) return intersect_packets<8>(scene, triangle_count, call, rays, hits);
     if (call.width == 16) return intersect_packets<16>(scene, triangle_count, call, rays, hits);
     RTCIntersectContext context = context_of(call);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!(rays.t_max[i] > rays.t_min[i])) continue;
+        if (!(rays.t_max(i) > rays.t_min(i))) continue;
         RTCRayHit one;
         one.ray = single_ray(rays, i);
         one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene, &context, &one);
-        hits.t[i] = one.ray.tfar;
-        hits.u[i] = one.hit.u;
-        hits.v[i] = one.hit.v;
-        hits.id[i] = shape_id(one.hit.geomID, one.hit.primID, triangle_count);
+        hits.set(i, {one.ray.tfar, one.hit.u, one.hit.v, shape_id(one.hit.geomID, one.hit.primID, triangle_count)});
     }
 }
 
-void occluded(RTCScene scene, EmbreeCall call, const RayArrays& rays, HitArrays& hits) {
+void occluded(RTCScene scene, EmbreeCall call, const RayBlocks& rays, HitBlocks& hits) {
     const FlushDenormals flush;
     if (call.width == 8) return occlude_packets<8>(scene, call, rays, hits);
     if (call.width == 16) return occlude_packets<16>(scene, call, rays, hits);
     RTCIntersectContext context = context_of(call);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!(rays.t_max[i] > rays.t_min[i])) continue;
+        if (!(rays.t_max(i) > rays.t_min(i))) continue;
         RTCRay ray = single_ray(rays, i);
         rtcOccluded1(scene, &context, &ray);
-        hits.id[i] = ray.tfar < 0 ? 0 : -1;
+        hits.blocks()[i / beam_rays].id[i % beam_rays] = ray.tfar < 0 ? 0 : -1;
     }
 }
 

@@ -69,8 +69,8 @@ std::string to_string(const EmbreeCall& call, bool any_hit);
 
 // As kernels.h has them: rays with t_max <= t_min are left out. The number of rays is a multiple of 16.
 // `triangle_count`: ids before the spheres'.
-void intersect(RTCScene scene, std::int32_t triangle_count, EmbreeCall call, const RayArrays& rays, HitArrays& hits);
-void occluded(RTCScene scene, EmbreeCall call, const RayArrays& rays, HitArrays& hits);
+void intersect(RTCScene scene, std::int32_t triangle_count, EmbreeCall call, const RayBlocks& rays, HitBlocks& hits);
+void occluded(RTCScene scene, EmbreeCall call, const RayBlocks& rays, HitBlocks& hits);
 
 // Embree wants denormals flushed to zero while it traces, and says that all else may cost a lot.
 class FlushDenormals {

@@ -10,7 +10,7 @@ namespace raywalk::bench {
 namespace {
 
 // Nanoseconds a ray, the middle one of three turns.
-double nanoseconds(const RaySet& set, const CompiledScene& scene, const Kernels& kernels, HitArrays& hits) {
+double nanoseconds(const RaySet& set, const CompiledScene& scene, const Kernels& kernels, HitBlocks& hits) {
     const auto door = traits_of(set.kind).common_origin ? kernels.intersect_beam : kernels.intersect;
     const Pass pass = timed(Clock::thread_cpu, [&] { door(scene, set.rays, hits); });
     return 1e9 * spread_of(take_turns({&pass, 1}, 3)[0]).median / static_cast<double>(set.live);
@@ -47,10 +47,10 @@ TriangleGrowth measure_triangles(std::size_t triangles, const Kernels& kernels) 
         growth.build_seconds[a] = spread_of(cpu).median;
         growth.build_wall[a] = spread_of(wall).median;
         const RaySet primary = primary_rays({640, 360});
-        HitArrays hits(primary.rays.size());
+        HitBlocks hits(primary.rays.size());
         growth.primary[a] = nanoseconds(primary, scene, kernels, hits);
         const RaySet diffuse = secondary_rays(RayKind::diffuse_bounce, geometry, primary, hits);
-        HitArrays diffuse_hits(diffuse.rays.size());
+        HitBlocks diffuse_hits(diffuse.rays.size());
         growth.diffuse[a] = nanoseconds(diffuse, scene, kernels, diffuse_hits);
     }
     return growth;

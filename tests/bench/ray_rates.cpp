@@ -32,7 +32,7 @@ std::vector<std::unique_ptr<EmbreeScene>> embree_scenes(const EmbreeDevice& devi
     return scenes;
 }
 
-void trace(const EmbreeContender& contender, std::int32_t triangle_count, const RaySet& set, HitArrays& hits) {
+void trace(const EmbreeContender& contender, std::int32_t triangle_count, const RaySet& set, HitBlocks& hits) {
     EmbreeCall call = contender.call;
     call.common_origin = traits_of(set.kind).common_origin;
     if (traits_of(set.kind).any_hit)
@@ -41,7 +41,7 @@ void trace(const EmbreeContender& contender, std::int32_t triangle_count, const 
         intersect(contender.scene->handle(), triangle_count, call, set.rays, hits);
 }
 
-void trace(const Kernels& kernels, const CompiledScene& scene, const RaySet& set, HitArrays& hits) {
+void trace(const Kernels& kernels, const CompiledScene& scene, const RaySet& set, HitBlocks& hits) {
     const KindTraits& traits = traits_of(set.kind);
     const auto door = traits.any_hit ? (traits.common_origin ? kernels.occluded_beam : kernels.occluded)
                                      : (traits.common_origin ? kernels.intersect_beam : kernels.intersect);
@@ -52,7 +52,7 @@ void trace(const Kernels& kernels, const CompiledScene& scene, const RaySet& set
 std::vector<EmbreeContender> fastest_two(const std::vector<EmbreeContender>& contenders, std::int32_t triangle_count,
                                          const RaySet& set, RateRow& row, bool has_spheres) {
     const RaySet sample = thinned(set, 5);
-    HitArrays hits(sample.rays.size());
+    HitBlocks hits(sample.rays.size());
     std::vector<Pass> passes;
     for (const EmbreeContender& c : contenders)
         passes.push_back(timed(Clock::thread_cpu, [&] { trace(c, triangle_count, sample, hits); }));
@@ -77,8 +77,8 @@ RateRow measure_kind(const Geometry& geometry, const std::vector<EmbreeContender
     row.workload = geometry.name, row.kind = set.kind, row.rays = set.live;
     const std::vector<EmbreeContender> best = fastest_two(contenders, triangle_count, set, row, has_spheres);
 
-    std::array<HitArrays, 4> hits;
-    hits.fill(HitArrays(set.rays.size()));
+    std::array<HitBlocks, 4> hits;
+    hits.fill(HitBlocks(set.rays.size()));
     const auto ours = [&](std::size_t a) {
         return timed(Clock::thread_cpu, [&, a] { trace(*options.kernels, scenes[a], set, hits[1 + 2 * a]); });
     };
@@ -119,7 +119,7 @@ double trace_for(double duration, RayKind kind, Accelerator accelerator, const G
                  const RateOptions& options) {
     const CompiledScene scene = compiled_shapes(geometry, accelerator);
     RaySet set = primary_rays(options.picture);
-    HitArrays hits(set.rays.size());
+    HitBlocks hits(set.rays.size());
     trace(*options.kernels, scene, set, hits);
     if (kind != RayKind::primary) set = secondary_rays(kind, geometry, set, hits);
     const double start = seconds(Clock::thread_cpu);
@@ -140,7 +140,7 @@ std::vector<RateRow> measure_rates(const Geometry& geometry, const RateOptions& 
                                                  compiled_shapes(geometry, Accelerator::bvh)};
 
     const RaySet primary = primary_rays(options.picture);
-    HitArrays primary_hits(primary.rays.size());
+    HitBlocks primary_hits(primary.rays.size());
     intersect(embree[0]->handle(), scenes[0].triangle_count, {16, true}, primary.rays, primary_hits);
     std::vector<RateRow> rows;
     for (const RayKind kind : ray_kinds) {

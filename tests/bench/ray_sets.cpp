@@ -29,19 +29,19 @@ Camera bench_camera(const Picture& picture) {
 void set_ray(RaySet& set, std::size_t i, const glm::vec3& origin, const glm::vec3& direction, float t_min,
              float t_max) {
     for (int axis = 0; axis < 3; ++axis) {
-        set.rays.origin[axis][i] = origin[axis];
-        set.rays.direction[axis][i] = direction[axis];
+        set.rays.origin(axis, i) = origin[axis];
+        set.rays.direction(axis, i) = direction[axis];
     }
-    set.rays.t_min[i] = t_min;
-    set.rays.t_max[i] = t_max;
+    set.rays.t_min(i) = t_min;
+    set.rays.t_max(i) = t_max;
     ++set.live;
 }
 
-glm::vec3 origin_of(const RayArrays& rays, std::size_t i) {
-    return {rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]};
+glm::vec3 origin_of(const RayBlocks& rays, std::size_t i) {
+    return {rays.origin(0, i), rays.origin(1, i), rays.origin(2, i)};
 }
-glm::vec3 direction_of(const RayArrays& rays, std::size_t i) {
-    return {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
+glm::vec3 direction_of(const RayBlocks& rays, std::size_t i) {
+    return {rays.direction(0, i), rays.direction(1, i), rays.direction(2, i)};
 }
 
 // Where a primary ray ended, moved off the surface to the side that it came from.
@@ -49,11 +49,11 @@ struct Place {
     glm::vec3 position, normal;  // normal: interpolated, on the side of the ray
 };
 
-Place place_of(const Geometry& geometry, const RayArrays& rays, const HitArrays& hits, std::size_t i) {
+Place place_of(const Geometry& geometry, const RayBlocks& rays, const HitBlocks& hits, std::size_t i) {
     const glm::vec3 direction = direction_of(rays, i);
     const auto triangles = static_cast<std::int32_t>(geometry.faces.size());
-    const std::int32_t id = hits.id[i];
-    glm::vec3 position = origin_of(rays, i) + hits.t[i] * direction, flat, smooth;
+    const std::int32_t id = hits.id(i);
+    glm::vec3 position = origin_of(rays, i) + hits.t(i) * direction, flat, smooth;
     if (id >= triangles) {
         const SphereShape& sphere = geometry.spheres[static_cast<std::size_t>(id - triangles)];
         flat = smooth = (position - sphere.center) / sphere.radius;
@@ -63,11 +63,17 @@ Place place_of(const Geometry& geometry, const RayArrays& rays, const HitArrays&
         for (std::size_t c = 0; c < 3; ++c) p[c] = geometry.positions[geometry.faces[f][c]];
         flat = glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
         const auto& n = geometry.corner_normals[f];
-        smooth = glm::normalize((1 - hits.u[i] - hits.v[i]) * n[0] + hits.u[i] * n[1] + hits.v[i] * n[2]);
+        smooth = glm::normalize((1 - hits.u(i) - hits.v(i)) * n[0] + hits.u(i) * n[1] + hits.v(i) * n[2]);
     }
     if (glm::dot(flat, direction) > 0) flat = -flat;
     if (glm::dot(smooth, flat) < 0) smooth = -smooth;
     return {position + 1e-4f * flat, smooth};
+}
+
+std::size_t live_rays(const ScatteredRays& block) {
+    std::size_t live = 0;
+    for (int i = 0; i < beam_rays; ++i) live += block.t_max[i] > block.t_min[i] ? 1 : 0;
+    return live;
 }
 
 // A number in [0, 1) that depends on its arguments only.
@@ -87,10 +93,10 @@ glm::vec3 cosine_direction(const glm::vec3& n, std::size_t i) {
 }
 
 // The floor as a mirror: the eye's image below it looks at what is above it.
-void reflect_in_floor(RaySet& set, const RaySet& primary, const HitArrays& hits, std::size_t i) {
+void reflect_in_floor(RaySet& set, const RaySet& primary, const HitBlocks& hits, std::size_t i) {
     const glm::vec3 eye = origin_of(primary.rays, i), d = direction_of(primary.rays, i);
     const float t = (floor_height - eye.y) / d.y;
-    if (!(t > 0) || (hits.id[i] >= 0 && hits.t[i] < t)) return;
+    if (!(t > 0) || (hits.id(i) >= 0 && hits.t(i) < t)) return;
     set_ray(set, i, {eye.x, 2 * floor_height - eye.y, eye.z}, {d.x, -d.y, d.z}, t * (1 + 1e-5f), farthest);
 }
 
@@ -109,7 +115,7 @@ RaySet primary_rays(const Picture& picture) {
     const Camera camera = bench_camera(picture);
     const double half_width = camera.half_height * picture.width / picture.height;
     RaySet set{RayKind::primary,
-               RayArrays(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))};
+               RayBlocks(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height))};
     std::size_t i = 0;
     for (int y = 0; y < picture.height; y += tile_size) {
         for (int x = 0; x < picture.width; x += tile_size) {
@@ -124,19 +130,19 @@ RaySet primary_rays(const Picture& picture) {
     return set;
 }
 
-RaySet secondary_rays(RayKind kind, const Geometry& geometry, const RaySet& primary, const HitArrays& hits) {
-    RaySet set{kind, RayArrays(primary.rays.size())};
+RaySet secondary_rays(RayKind kind, const Geometry& geometry, const RaySet& primary, const HitBlocks& hits) {
+    RaySet set{kind, RayBlocks(primary.rays.size())};
     for (std::size_t i = 0; i < primary.rays.size(); ++i) {
-        set.rays.t_max[i] = 0;
+        set.rays.t_max(i) = 0;
         if (traits_of(kind).common_origin)  // also those that do not exist
             for (int axis = 0; axis < 3; ++axis)
-                set.rays.origin[axis][i] = kind == RayKind::shadow ? light[axis] : primary.rays.origin[axis][i];
+                set.rays.origin(axis, i) = kind == RayKind::shadow ? light[axis] : primary.rays.origin(axis, i);
         if (kind == RayKind::planar_mirror) {
-            set.rays.origin[1][i] = 2 * floor_height - primary.rays.origin[1][i];
+            set.rays.origin(1, i) = 2 * floor_height - primary.rays.origin(1, i);
             reflect_in_floor(set, primary, hits, i);
             continue;
         }
-        if (hits.id[i] < 0) continue;
+        if (hits.id(i) < 0) continue;
         const Place place = place_of(geometry, primary.rays, hits, i);
         const glm::vec3 d = direction_of(primary.rays, i);
         if (kind == RayKind::shadow)
@@ -146,21 +152,18 @@ RaySet secondary_rays(RayKind kind, const Geometry& geometry, const RaySet& prim
         else
             set_ray(set, i, place.position, cosine_direction(place.normal, i), 0, farthest);
     }
-    return set;
+    // Blocks of 64 of which none exists are in nobody's queue.
+    RaySet compact{kind, RayBlocks(), set.live};
+    for (const ScatteredRays& block : set.rays.blocks())
+        if (live_rays(block) > 0) compact.rays.add(block);
+    return compact;
 }
 
 RaySet thinned(const RaySet& set, std::size_t step) {
-    const std::size_t blocks = (set.rays.size() / tile_pixels + step - 1) / step;
-    RaySet thin{set.kind, RayArrays(blocks * tile_pixels)};
-    for (std::size_t i = 0; i < thin.rays.size(); ++i) {
-        const std::size_t from = i / tile_pixels * step * tile_pixels + i % tile_pixels;
-        for (int axis = 0; axis < 3; ++axis) {
-            thin.rays.origin[axis][i] = set.rays.origin[axis][from];
-            thin.rays.direction[axis][i] = set.rays.direction[axis][from];
-        }
-        thin.rays.t_min[i] = set.rays.t_min[from];
-        thin.rays.t_max[i] = set.rays.t_max[from];
-        if (thin.rays.t_max[i] > thin.rays.t_min[i]) ++thin.live;
+    RaySet thin{set.kind, RayBlocks()};
+    for (std::size_t b = 0; b < set.rays.blocks().size(); b += step) {
+        thin.rays.add(set.rays.blocks()[b]);
+        thin.live += live_rays(set.rays.blocks()[b]);
     }
     return thin;
 }

@@ -26,7 +26,7 @@ const KindTraits& traits_of(RayKind kind);
 // nothing has no shadow ray) have t_max = 0 and are left out by everyone.
 struct RaySet {
     RayKind kind;
-    RayArrays rays;
+    RayBlocks rays;
     std::size_t live = 0;  // that exist
 };
 
@@ -35,8 +35,9 @@ struct Picture {
 };
 
 RaySet primary_rays(const Picture& picture);
-// Of `kind`, which is not primary, from the nearest hits of the primary rays.
-RaySet secondary_rays(RayKind kind, const Geometry& geometry, const RaySet& primary, const HitArrays& hits);
+// Of `kind`, which is not primary, from the nearest hits of the primary rays; without blocks of 64 of which none
+// exists.
+RaySet secondary_rays(RayKind kind, const Geometry& geometry, const RaySet& primary, const HitBlocks& hits);
 // Every `step`-th block of 64 rays.
 RaySet thinned(const RaySet& set, std::size_t step);
 

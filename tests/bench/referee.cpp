@@ -17,10 +17,10 @@ double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v
 }  // namespace
 
 Referee::Referee(const Geometry& geometry, const RaySet& set, std::size_t ray)
-    : t_min_(set.rays.t_min[ray]), t_max_(set.rays.t_max[ray]) {
+    : t_min_(set.rays.t_min(ray)), t_max_(set.rays.t_max(ray)) {
     for (int axis = 0; axis < 3; ++axis) {
-        origin_[axis] = set.rays.origin[axis][ray];
-        direction_[axis] = set.rays.direction[axis][ray];
+        origin_[axis] = set.rays.origin(axis, ray);
+        direction_[axis] = set.rays.direction(axis, ray);
     }
     for (const auto& face : geometry.faces)
         triangle({geometry.positions[face[0]], geometry.positions[face[1]], geometry.positions[face[2]]});

@@ -1,7 +1,8 @@
 #include "tracer/kernels/kernels.h"
 
 #include <algorithm>
-#include <bit>
+#include <limits>
+#include <vector>
 
 #include "tracer/kernels/tile_scratch.h"
 
@@ -18,99 +19,67 @@ namespace raywalk {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Copies numbers between arrays and the aligned arrays of a beam, in registers where there are 64 of them.
-template <class T>
-HWY_INLINE void copy(const T* from, T* to, std::size_t count) {
-    if (count != beam_rays) {
-        std::copy_n(from, count, to);
-        return;
-    }
-    for (int at = 0; at < beam_rays; at += lanes) store_unaligned(load_unaligned(from + at), to + at);
-}
-
-// Which of the first `count` rays are not left out.
-std::uint64_t taking_part(const float* t_min, const float* t_max, std::size_t count) {
+// Which rays of the block are not left out.
+std::uint64_t taking_part(const ScatteredRays& rays) {
     std::uint64_t active = 0;
-    for (int at = 0; at < beam_rays; at += lanes)
-        active |= static_cast<std::uint64_t>(bits(load(t_max + at) > load(t_min + at))) << at;
-    return count == beam_rays ? active : active & ((std::uint64_t{1} << count) - 1);
+    for (int g = 0; g < beam_rays / lanes; ++g)
+        active |= rays_of(bits(load(rays.t_max + g * lanes) > load(rays.t_min + g * lanes)), g);
+    return active;
 }
 
-// Rays [first, first + 64) of the arrays, as many as there are; returns which are not left out.
-std::uint64_t fill_beam(const RayArrays& rays, std::size_t first, BeamRays& beam) {
-    const std::size_t count = std::min<std::size_t>(rays.size() - first, beam_rays);
-    for (int axis = 0; axis < 3; ++axis) copy(rays.direction[axis].data() + first, beam.direction[axis], count);
-    copy(rays.t_min.data() + first, beam.t_min, count);
-    copy(rays.t_max.data() + first, beam.t_max, count);
-    for (int axis = 0; axis < 3; ++axis) beam.origin[axis] = rays.origin[axis][0];
-    return taking_part(beam.t_min, beam.t_max, count);
-}
-
-std::uint64_t fill_scattered(const RayArrays& rays, std::size_t first, ScatteredRays& scattered) {
-    const std::size_t count = std::min<std::size_t>(rays.size() - first, beam_rays);
-    for (int axis = 0; axis < 3; ++axis) {
-        copy(rays.origin[axis].data() + first, scattered.origin[axis], count);
-        copy(rays.direction[axis].data() + first, scattered.direction[axis], count);
+// The same rays, which have the origin of `origin`'s ray 0 in common.
+void copy_to_beam(const ScatteredRays& rays, const ScatteredRays& origin, BeamRays& beam) {
+    for (int at = 0; at < beam_rays; at += lanes) {
+        for (int axis = 0; axis < 3; ++axis) store(load(rays.direction[axis] + at), beam.direction[axis] + at);
+        store(load(rays.t_min + at), beam.t_min + at);
+        store(load(rays.t_max + at), beam.t_max + at);
     }
-    copy(rays.t_min.data() + first, scattered.t_min, count);
-    copy(rays.t_max.data() + first, scattered.t_max, count);
-    return taking_part(scattered.t_min, scattered.t_max, count);
+    for (int axis = 0; axis < 3; ++axis) beam.origin[axis] = origin.origin[axis][0];
 }
 
-// All rays of the arrays, 64 at a time: `fill` copies them into `some`, `trace` finds what the active ones hit.
-template <class Rays, class Fill, class Trace>
-void intersect_all(const RayArrays& rays, HitArrays& hits, Fill fill, Trace trace) {
-    Rays some = {};
-    BeamHits found;
-    for (std::size_t first = 0; first < rays.size(); first += beam_rays) {
-        const std::size_t count = std::min<std::size_t>(rays.size() - first, beam_rays);
-        const std::uint64_t active = fill(rays, first, some);
-        if (active == 0) {
-            std::fill_n(hits.id.begin() + static_cast<std::ptrdiff_t>(first), count, -1);
-            continue;
-        }
-        trace(some, active, found);
-        copy(found.t, hits.t.data() + first, count);
-        copy(found.u, hits.u.data() + first, count);
-        copy(found.v, hits.v.data() + first, count);
-        copy(found.id, hits.id.data() + first, count);
+// Asks `trace` for the hits of every block with rays that take part.
+template <class Trace>
+void trace_blocks(const RayBlocks& rays, HitBlocks& hits, Trace trace) {
+    const std::vector<ScatteredRays>& blocks = rays.blocks();
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        BeamHits& found = hits.blocks()[b];
+        if (const std::uint64_t active = taking_part(blocks[b]); active != 0)
+            trace(blocks[b], active, found);
+        else
+            std::fill_n(found.id, beam_rays, -1);
     }
 }
 
-template <class Rays, class Fill, class Trace>
-void occlude_all(const RayArrays& rays, HitArrays& hits, Fill fill, Trace trace) {
-    Rays some = {};
-    for (std::size_t first = 0; first < rays.size(); first += beam_rays) {
-        const std::uint64_t active = fill(rays, first, some);
-        const std::uint64_t found = active == 0 ? 0 : trace(some, active);
-        HWY_ALIGN std::int32_t ids[beam_rays];
-        for (int at = 0; at < beam_rays; at += lanes)
-            store(select(mask_of_bits(static_cast<std::uint32_t>(found >> at) & 0xffffu), Int(0), Int(-1)), ids + at);
-        copy(ids, hits.id.data() + first, std::min<std::size_t>(rays.size() - first, beam_rays));
-    }
+void note_blocked(std::uint64_t blocked, BeamHits& hits) {
+    for (int g = 0; g < beam_rays / lanes; ++g)
+        store(select(mask_of_bits(lanes_of(blocked, g)), Int(0), Int(-1)), hits.id + g * lanes);
 }
 
-void intersect_array(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    intersect_all<ScatteredRays>(rays, hits, fill_scattered, [&](const auto& some, std::uint64_t active, auto& found) {
+void intersect_blocks(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits) {
+    trace_blocks(rays, hits, [&](const ScatteredRays& some, std::uint64_t active, BeamHits& found) {
         intersect_scattered(scene, some, active, found);
     });
 }
 
-void intersect_array_as_beams(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    intersect_all<BeamRays>(rays, hits, fill_beam, [&](const auto& some, std::uint64_t active, auto& found) {
-        intersect_beam(scene, some, active, found);
+void intersect_blocks_as_beams(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits) {
+    BeamRays beam;
+    trace_blocks(rays, hits, [&](const ScatteredRays& some, std::uint64_t active, BeamHits& found) {
+        copy_to_beam(some, rays.blocks().front(), beam);
+        intersect_beam(scene, beam, active, found);
     });
 }
 
-void occlude_array(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    occlude_all<ScatteredRays>(rays, hits, fill_scattered, [&](const auto& some, std::uint64_t active) {
-        return occluded_scattered(scene, some, active);
+void occlude_blocks(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits) {
+    trace_blocks(rays, hits, [&](const ScatteredRays& some, std::uint64_t active, BeamHits& found) {
+        note_blocked(occluded_scattered(scene, some, active), found);
     });
 }
 
-void occlude_array_as_beams(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits) {
-    occlude_all<BeamRays>(rays, hits, fill_beam, [&](const auto& some, std::uint64_t active) {
-        return occluded_beam(scene, some, active, true);
+void occlude_blocks_as_beams(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits) {
+    BeamRays beam;
+    trace_blocks(rays, hits, [&](const ScatteredRays& some, std::uint64_t active, BeamHits& found) {
+        copy_to_beam(some, rays.blocks().front(), beam);
+        note_blocked(occluded_beam(scene, beam, active, true), found);
     });
 }
 
@@ -130,10 +99,10 @@ const Kernels kernels = {
     .lanes = register_lanes,
     .trace_tile = trace_tile,
     .resolve_tile = resolve_tile,
-    .intersect = intersect_array,
-    .intersect_beam = intersect_array_as_beams,
-    .occluded = occlude_array,
-    .occluded_beam = occlude_array_as_beams,
+    .intersect = intersect_blocks,
+    .intersect_beam = intersect_blocks_as_beams,
+    .occluded = occlude_blocks,
+    .occluded_beam = occlude_blocks_as_beams,
 };
 
 }  // namespace HWY_NAMESPACE
@@ -144,14 +113,20 @@ HWY_AFTER_NAMESPACE();
 
 namespace raywalk {
 
-RayArrays::RayArrays(std::size_t n) : t_min(n, 0), t_max(n, __builtin_inff()) {
-    for (int axis = 0; axis < 3; ++axis) {
-        origin[axis].resize(n);
-        direction[axis].resize(n);
-    }
+RayBlocks::RayBlocks(std::size_t rays) : size_(rays), blocks_((rays + beam_rays - 1) / beam_rays) {
+    for (ScatteredRays& block : blocks_) block = {};
+    for (std::size_t i = 0; i < rays; ++i) t_max(i) = std::numeric_limits<float>::infinity();
 }
 
-HitArrays::HitArrays(std::size_t n) : t(n), u(n), v(n), id(n, -1) {}
+HitBlocks::HitBlocks(std::size_t rays) : size_(rays), blocks_((rays + beam_rays - 1) / beam_rays) {
+    for (BeamHits& block : blocks_) std::fill_n(block.id, beam_rays, -1);
+}
+
+void HitBlocks::set(std::size_t i, const RayHit& hit) {
+    BeamHits& block = blocks_[i / beam_rays];
+    const std::size_t lane = i % beam_rays;
+    block.t[lane] = hit.t, block.u[lane] = hit.u, block.v[lane] = hit.v, block.id[lane] = hit.id;
+}
 
 TileScratchPointer make_tile_scratch() { return TileScratchPointer(new TileScratch()); }
 void TileScratchDeleter::operator()(TileScratch* scratch) const { delete scratch; }

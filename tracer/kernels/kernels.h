@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "tracer/compiled/compiled_scene.h"
+#include "tracer/kernels/ray_arrays.h"
 #include "tracer/rendering/camera.h"
 #include "tracer/rendering/film.h"
 
@@ -49,19 +49,6 @@ struct TileScratchDeleter {
 using TileScratchPointer = std::unique_ptr<TileScratch, TileScratchDeleter>;
 TileScratchPointer make_tile_scratch();
 
-// Rays and hits for tests and benchmarks, one array a component. Directions need not be unit; t is in their length.
-// Rays with t_max <= t_min are left out: they hit nothing.
-struct RayArrays {
-    std::vector<float> origin[3], direction[3], t_min, t_max;  // t_min starts as 0, t_max as infinity
-    explicit RayArrays(std::size_t n = 0);
-    [[nodiscard]] std::size_t size() const { return t_max.size(); }
-};
-struct HitArrays {
-    std::vector<float> t, u, v;    // u, v: barycentric weights of corners 1 and 2 (triangles only)
-    std::vector<std::int32_t> id;  // shape id, -1 for none
-    explicit HitArrays(std::size_t n = 0);
-};
-
 struct Kernels {
     std::string_view name;  // "scalar", "sse4", "avx2", "avx512"
     int lanes;              // floats in one register: 1, 4, 8, 16
@@ -73,12 +60,12 @@ struct Kernels {
     void (*resolve_tile)(const FilmTile& tile, float scale, int columns, int rows, std::uint32_t* out, int row_stride);
 
     // Nearest hits of rays that share nothing.
-    void (*intersect)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
+    void (*intersect)(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits);
     // The same for rays of one common origin (that of ray 0), traced as beams of 64.
-    void (*intersect_beam)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
+    void (*intersect_beam)(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits);
     // id = 0 where anything lies in (t_min, t_max), else -1.
-    void (*occluded)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
-    void (*occluded_beam)(const CompiledScene& scene, const RayArrays& rays, HitArrays& hits);
+    void (*occluded)(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits);
+    void (*occluded_beam)(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits);
 };
 
 // Those this processor can run, best first.
