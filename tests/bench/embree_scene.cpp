@@ -113,6 +113,7 @@ void intersect_packets(RTCScene scene, std::int32_t triangle_count, EmbreeCall c
     prepare<width>(rays, packet.ray);
     for (std::size_t first = 0; first < rays.size(); first += width) {
         const std::size_t lane = first % beam_rays;
+        if (lane == 0) fetch_ahead(rays, hits, first / beam_rays);
         if (!fill<width>(rays.blocks()[first / beam_rays], call.common_origin, lane, packet.ray, valid)) continue;
         for (int i = 0; i < width; ++i) packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         if constexpr (width == 8)
@@ -136,6 +137,7 @@ void occlude_packets(RTCScene scene, EmbreeCall call, const RayBlocks& rays, Hit
     prepare<width>(rays, packet);
     for (std::size_t first = 0; first < rays.size(); first += width) {
         const std::size_t lane = first % beam_rays;
+        if (lane == 0) fetch_ahead(rays, hits, first / beam_rays);
         if (!fill<width>(rays.blocks()[first / beam_rays], call.common_origin, lane, packet, valid)) continue;
         if constexpr (width == 8)
             rtcOccluded8(valid, scene, &context, reinterpret_cast<RTCRay8*>(&packet));
@@ -216,6 +218,7 @@ void intersect(RTCScene scene, std::int32_t triangle_count, EmbreeCall call, con
     if (call.width == 16) return intersect_packets<16>(scene, triangle_count, call, rays, hits);
     RTCIntersectContext context = context_of(call);
     for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (i % beam_rays == 0) fetch_ahead(rays, hits, i / beam_rays);
         if (!(rays.t_max(i) > rays.t_min(i))) continue;
         RTCRayHit one;
         one.ray = single_ray(rays, i);
@@ -231,6 +234,7 @@ void occluded(RTCScene scene, EmbreeCall call, const RayBlocks& rays, HitBlocks&
     if (call.width == 16) return occlude_packets<16>(scene, call, rays, hits);
     RTCIntersectContext context = context_of(call);
     for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (i % beam_rays == 0) fetch_ahead(rays, hits, i / beam_rays);
         if (!(rays.t_max(i) > rays.t_min(i))) continue;
         RTCRay ray = single_ray(rays, i);
         rtcOccluded1(scene, &context, &ray);

@@ -43,6 +43,7 @@ void trace_blocks(const RayBlocks& rays, HitBlocks& hits, Trace trace) {
     const std::vector<ScatteredRays>& blocks = rays.blocks();
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         BeamHits& found = hits.blocks()[b];
+        fetch_ahead(rays, hits, b);
         if (const std::uint64_t active = taking_part(blocks[b]); active != 0)
             trace(blocks[b], active, found);
         else

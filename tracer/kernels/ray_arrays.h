@@ -87,4 +87,15 @@ class HitBlocks {
     std::vector<BeamHits> blocks_;
 };
 
+// Asks for the memory of blocks soon after block b. Who goes through blocks in order and does without waits for memory
+// longer than a beam takes to be traced.
+inline void fetch_ahead(const RayBlocks& rays, HitBlocks& hits, std::size_t b) {
+    constexpr std::size_t cache_line = 64, blocks_ahead = 2;
+    if (b + blocks_ahead >= rays.blocks().size()) return;
+    const auto* some = reinterpret_cast<const char*>(&rays.blocks()[b + blocks_ahead]);
+    const auto* found = reinterpret_cast<const char*>(&hits.blocks()[b + blocks_ahead]);
+    for (std::size_t at = 0; at < sizeof(ScatteredRays); at += cache_line) __builtin_prefetch(some + at);
+    for (std::size_t at = 0; at < sizeof(BeamHits); at += cache_line) __builtin_prefetch(found + at, 1);
+}
+
 }  // namespace raywalk
