@@ -18,16 +18,19 @@ namespace HWY_NAMESPACE {
 // A pair of a group of rays and a shape of a block that may meet: bit 16 group + lane of the shape.
 using Pairs = std::uint64_t;
 
-// What a group of rays hits, where that is nearer than what they have, or as near with a lower id.
+// What a group of rays hits, where that is nearer than what they have, or as near with a lower id; any-hit rays are
+// active no more. Returns whether a nearest hit changed.
 template <bool any_hit>
 HWY_INLINE bool take_hits(Mask hit, Real t, Real u, Real v, std::int32_t id, int group, Beam& beam) {
     const int at = group * lanes;
-    hit &= mask_of_bits(lanes_of(beam.active, group));
     if constexpr (any_hit) {
+        // Lanes that are not active stay so: nothing here waits for the mask that the last pair left.
         hit &= t < load(beam.rays->t_max + at);
         beam.active &= ~rays_of(bits(hit), group);
+        return false;
     } else {
         BeamHits& hits = *beam.hits;
+        hit &= mask_of_bits(lanes_of(beam.active, group));
         const Real nearest = load(hits.t + at);
         const Int own(id), nearest_id = load(hits.id + at);
         hit &= (t < nearest) | ((t == nearest) & (own < nearest_id));
@@ -35,8 +38,8 @@ HWY_INLINE bool take_hits(Mask hit, Real t, Real u, Real v, std::int32_t id, int
         store(select(hit, own, nearest_id), hits.id + at);
         store(select(hit, u, load(hits.u + at)), hits.u + at);
         store(select(hit, v, load(hits.v + at)), hits.v + at);
+        return any(hit);
     }
-    return any(hit);
 }
 
 // Which triangles may touch the beam at all: outside none of its four sides and depths. Corners: along U, V and depth.
@@ -132,13 +135,14 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, const float* origin, 
 
     beam.tests_left -= std::popcount(pairs);
     bool met = false;
+    const std::uint64_t active = beam.active;
     for (; pairs != 0; pairs &= pairs - 1) {
         const int pair = std::countr_zero(pairs), group = pair / lanes, l = pair % lanes, at = group * lanes;
         const TriangleLanes r = meet_triangles(triangles.one(l), directions_of(*beam.rays, at),
                                                beam.group[group].growth, load(beam.rays->t_min + at));
         met |= take_hits<any_hit>(r.hit, r.t, r.u, r.v, block.id[l], group, beam);
     }
-    if (met) shorten_beam(beam);
+    if (met || beam.active != active) shorten_beam(beam);
 }
 
 // A sphere touches a group of rays unless it lies wholly beyond one of the planes through the group's steepest slopes.
@@ -166,6 +170,7 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std:
         pairs |= rays_of(deep_enough & bits(touches_group(beam.group[g], turned, grown)), g);
 
     bool met = false;
+    const std::uint64_t active = beam.active;
     for (; pairs != 0; pairs &= pairs - 1) {
         const int pair = std::countr_zero(pairs), group = pair / lanes, l = pair % lanes, at = group * lanes;
         const Vec3 own = {Real(centers[0][l]), Real(centers[1][l]), Real(centers[2][l])};
@@ -173,7 +178,7 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std:
                                            beam.group[group].inverse_squared_length, load(beam.rays->t_min + at));
         met |= take_hits<any_hit>(r.hit, r.t, Real(0.0f), Real(0.0f), first_id + block.id[l], group, beam);
     }
-    if (met) shorten_beam(beam);
+    if (met || beam.active != active) shorten_beam(beam);
 }
 
 }  // namespace HWY_NAMESPACE

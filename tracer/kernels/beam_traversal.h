@@ -88,6 +88,7 @@ void traverse_beam(const CompiledScene& scene, const Bvh& bvh, Beam& beam) {
             const BvhNode& node = bvh.nodes[at.bits];
             Real entry;
             const std::uint32_t entered = enter_children(node, slabs, beam, entry);
+            fetch_children(scene.hierarchy, bvh, node, entered);
             if (stack.enter<true>(entered, entry, node.child, at)) continue;
         }
         if (!stack.leave(beam.depth_max, at)) return;

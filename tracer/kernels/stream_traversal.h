@@ -52,8 +52,8 @@ class StreamStack {
 };
 
 // Sends the rays to the children that they enter, the nearest on top.
-HWY_INLINE void visit_node(const BvhNode& node, std::uint64_t active, const RayStream& rays, const BeamHits& hits,
-                           StreamStack& stack) {
+HWY_INLINE void visit_node(const CompiledScene& scene, const Bvh& bvh, const BvhNode& node, std::uint64_t active,
+                           const RayStream& rays, const BeamHits& hits, StreamStack& stack) {
     HWY_ALIGN std::int32_t entered[beam_rays];  // by ray: which children
     HWY_ALIGN float first_entry[lanes];         // by child
     std::uint32_t children = 0;
@@ -68,6 +68,7 @@ HWY_INLINE void visit_node(const BvhNode& node, std::uint64_t active, const RayS
         children |= own;
     }
     store(nearest, first_entry);
+    fetch_children(scene.hierarchy, bvh, node, children);
     const int base = stack.size();
     for (; children != 0; children &= children - 1) {
         const int child = std::countr_zero(children);
@@ -183,7 +184,7 @@ std::uint64_t traverse_stream(const CompiledScene& scene, const Bvh& bvh, std::u
         } else if (visit.at.leaf()) {
             done |= visit_leaf<any_hit>(scene, visit.at, visitors, rays, hits);
         } else {
-            visit_node(bvh.nodes[visit.at.bits], visitors, rays, hits, stack);
+            visit_node(scene, bvh, bvh.nodes[visit.at.bits], visitors, rays, hits, stack);
         }
     }
     return done;

@@ -25,6 +25,21 @@ struct KdInterval {
     float enter, leave;
 };
 
+// Asks for the memory of children that will be visited, of nodes and first blocks. Fine meshes are larger than the near
+// caches, and memory comes while other children are visited.
+HWY_INLINE void fetch_children(const Hierarchy& h, const Bvh& bvh, const BvhNode& node, std::uint32_t entered) {
+    constexpr std::size_t cache_line = 64;
+    for (; entered != 0; entered &= entered - 1) {
+        const BvhReference child = {node.child[std::countr_zero(entered)]};
+        const void* memory = bvh.nodes.data() + child.bits;
+        if (child.leaf()) memory = h.triangle_blocks.data() + child.first();
+        if (child.leaf() && child.spheres()) memory = h.sphere_blocks.data() + child.first();
+        // The largest of the three; to ask for more than there is does no harm.
+        for (std::size_t at = 0; at < sizeof(TriangleBlock); at += cache_line)
+            __builtin_prefetch(static_cast<const char*>(memory) + at);
+    }
+}
+
 // BVH children by entry distance: one 64-bit key each, bits of the distance (>= 0, so ordered as integers) above the
 // reference.
 class BvhStack {
