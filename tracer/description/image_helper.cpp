@@ -1,22 +1,22 @@
 // The programs raywalk_png_jpeg and raywalk_openimageio: decode or encode one picture, from standard input to standard
 // output, both files in memory. Not for the command line: image_process.cpp runs them.
 //   decode FORMAT PIXELS MEMORY_BYTES OUTPUT_BYTES SECONDS
-//   encode FORMAT WIDTH HEIGHT floats|bytes
+//   encode FORMAT WIDTH HEIGHT          (JPEG)
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <new>
 #include <string>
 
 #include "tracer/description/image_codecs.h"
 #include "tracer/description/image_process.h"
-#include "tracer/ground/file_bytes.h"
 #include "tracer/ground/sanitized.h"
 
 namespace raywalk {
@@ -28,6 +28,28 @@ void limit(int resource, std::uint64_t most) {
     const rlimit both{most, most};
     setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
+
+// The picture, without a copy of it: as little memory and time as can be.
+class Input {
+  public:
+    Input() {
+        struct stat status {};
+        if (fstat(STDIN_FILENO, &status) != 0 || status.st_size == 0) return;
+        size_ = static_cast<std::size_t>(status.st_size);
+        data_ = mmap(nullptr, size_, PROT_READ, MAP_SHARED, STDIN_FILENO, 0);
+        if (data_ == MAP_FAILED) throw std::bad_alloc();
+    }
+    ~Input() {
+        if (size_ > 0) munmap(data_, size_);
+    }
+    Input(const Input&) = delete;
+    Input& operator=(const Input&) = delete;
+    [[nodiscard]] std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
+
+  private:
+    void* data_ = nullptr;
+    std::size_t size_ = 0;
+};
 
 bool write_all(const void* data, std::size_t size) {
     const char* at = static_cast<const char*>(data);
@@ -68,15 +90,12 @@ int decode(ImageFormat format, std::string_view input, std::uint64_t most_pixels
     return answer(ImageReply::done, width, height, image.texels.data(), image.texels.size() * sizeof image.texels[0]);
 }
 
-int encode(ImageFormat format, std::string_view input, int width, int height, bool floats) {
+int encode(std::string_view input, int width, int height) {
     const std::size_t values = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3;
-    if (input.size() != values * (floats ? sizeof(float) : 1)) return answer_failure("its size is wrong");
+    if (input.size() != values) return answer_failure("its size is wrong");
     std::vector<unsigned char> bytes;
-    // The input's memory begins on a page, so floats are aligned.
     const std::string problem =
-        floats
-            ? encode_floats(format, width, height, {reinterpret_cast<const float*>(input.data()), values}, bytes)
-            : encode_bytes(format, width, height, {reinterpret_cast<const std::uint8_t*>(input.data()), values}, bytes);
+        encode_bytes(width, height, {reinterpret_cast<const std::uint8_t*>(input.data()), values}, bytes);
     if (!problem.empty()) return answer_failure(problem);
     return answer(ImageReply::done, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), bytes.data(),
                   bytes.size());
@@ -85,7 +104,7 @@ int encode(ImageFormat format, std::string_view input, int width, int height, bo
 int run(int count, char** words) {
     const std::string task = count > 1 ? words[1] : "";
     const auto number = [&](int i) { return std::strtoull(words[i], nullptr, 10); };
-    if (!(task == "decode" && count == 7) && !(task == "encode" && count == 6)) {
+    if (!(task == "decode" && count == 7) && !(task == "encode" && count == 5)) {
         std::fputs("raywalk runs this program for each picture that it reads or writes\n", stderr);
         return 2;
     }
@@ -100,10 +119,9 @@ int run(int count, char** words) {
         limit(RLIMIT_CPU, number(6));
     }
     try {
-        const FileBytes input = read_file_bytes("/dev/fd/0", ~std::uint64_t{0});
-        return task == "decode" ? decode(format, input.text(), number(3))
-                                : encode(format, input.text(), static_cast<int>(number(3)), static_cast<int>(number(4)),
-                                         std::strcmp(words[5], "floats") == 0);
+        const Input input;
+        return task == "decode" ? decode(format, input.bytes(), number(3))
+                                : encode(input.bytes(), static_cast<int>(number(3)), static_cast<int>(number(4)));
     } catch (const std::bad_alloc&) {
         return answer_failure("it needs too much memory");
     } catch (const std::exception& error) {
