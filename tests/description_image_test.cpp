@@ -5,6 +5,7 @@
 #include <bit>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 
 #include "tests/description_folder.h"
 #include "tracer/description/image.h"
@@ -177,6 +178,36 @@ TEST(ImageTest, AHeaderThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
     EXPECT_EQ(refusal_of(folder.path() / "c.png", limits), "read");
     limits.image_bytes = 10;
     EXPECT_NE(refusal_of(folder.path() / "c.png", limits).find("--max-image-bytes"), std::string::npos);
+}
+
+TEST_P(EveryFormat, MostlyHolesIsRefusedUnread) {
+    const TestFolder folder;
+    const auto file = folder.path() / ("a" + std::string(GetParam()));
+    write_image(file, 64, 64, pattern_bytes(64, 64));
+    std::filesystem::resize_file(file, 900u << 20);
+    rusage before{}, after{};
+    getrusage(RUSAGE_SELF, &before);
+    const std::string text = refusal_of(file);
+    getrusage(RUSAGE_SELF, &after);
+    EXPECT_NE(text.find("has 943718400 bytes, but only "), std::string::npos) << text;
+    EXPECT_NE(text.find("cp --sparse=never"), std::string::npos) << text;
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 << 10);  // KB
+    std::filesystem::resize_file(file, std::uintmax_t{4} << 30);
+    EXPECT_NE(refusal_of(file).find("has 4294967296 bytes"), std::string::npos);
+}
+
+// As cp makes them of long stretches of zeros.
+TEST(ImageTest, AFewHolesAreNoFault) {
+    const TestFolder folder;
+    const int side = 1100;  // 14 MB
+    write_image(folder.path() / "a.tif", FloatImage{side, side, std::vector<float>(side * side * 3)}, Saving::urgent);
+    const std::string bytes = content_of(folder.path() / "a.tif");
+    const auto size = std::filesystem::file_size(folder.path() / "a.tif");
+    const auto file = folder.write("b.tif", bytes.substr(0, 8));
+    std::filesystem::resize_file(file, size - 4096);
+    std::ofstream(file, std::ios::app | std::ios::binary) << bytes.substr(size - 4096);
+    EXPECT_EQ(content_of(file), bytes);
+    EXPECT_EQ(refusal_of(file), "read");
 }
 
 TEST(ImageTest, WhatIsNoRegularFileIsRefusedAtOnce) {
