@@ -196,6 +196,23 @@ TEST_P(EveryFormat, MostlyHolesIsRefusedUnread) {
     EXPECT_NE(refusal_of(file).find("has 4294967296 bytes"), std::string::npos);
 }
 
+TEST(ImageTest, AJpegOfHundredsOfScansIsRefused) {
+    const TestFolder folder;
+    const std::string jpeg = content_of(RAYWALK_ROOT "/tests/fuzz/corpus/image/progressive.jpg");
+    const std::size_t scan = jpeg.find("\xFF\xDA");  // the first one, up to the next scan or its table
+    const std::size_t end = std::min(jpeg.find("\xFF\xDA", scan + 2), jpeg.find("\xFF\xC4", scan));
+    ASSERT_LT(end, jpeg.size());
+    const auto with_scans_more = [&](int more) {
+        std::string bytes = jpeg.substr(0, end);
+        for (int i = 0; i < more; ++i) bytes += jpeg.substr(scan, end - scan);
+        return folder.write("a.jpg", bytes + jpeg.substr(end));
+    };
+    EXPECT_EQ(refusal_of(with_scans_more(0)), "read");
+    EXPECT_EQ(refusal_of(with_scans_more(50)), "read");
+    EXPECT_NE(refusal_of(with_scans_more(200)).find("it has more than 100 scans"), std::string::npos);
+    EXPECT_NE(refusal_of(with_scans_more(20'000)).find("it has more than 100 scans"), std::string::npos);
+}
+
 // As cp makes them of long stretches of zeros.
 TEST(ImageTest, AFewHolesAreNoFault) {
     const TestFolder folder;

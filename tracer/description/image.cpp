@@ -48,7 +48,7 @@ ImageBudget budget_for(std::uint64_t pixels, std::uint64_t file_bytes) {
     return {.pixels = pixels,
             .memory_bytes = (80ull << 20) + 2 * file_bytes + 24 * pixels,
             .output_bytes = sizeof(ImageReply) + 4 * pixels + 4096,
-            .seconds = 6 + file_bytes / (1 << 20)};
+            .seconds = 6 + file_bytes / (16 << 20)};
 }
 
 ImageResult decode(ImageFormat format, std::string_view bytes, const fs::path& file, const SourceLocation& where,
