@@ -9,6 +9,7 @@
 
 #include "tests/description_folder.h"
 #include "tracer/description/image.h"
+#include "tracer/ground/sanitized.h"
 #include "tracer/ground/whole_file.h"
 
 namespace raywalk {
@@ -194,6 +195,22 @@ TEST_P(EveryFormat, MostlyHolesIsRefusedUnread) {
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 << 10);  // KB
     std::filesystem::resize_file(file, std::uintmax_t{4} << 30);
     EXPECT_NE(refusal_of(file).find("has 4294967296 bytes"), std::string::npos);
+}
+
+// A text of 240 MB in the header of a file of 16 KB, which could hold a picture that may take as much; this one is
+// small.
+TEST(ImageTest, MemoryIsThatOfThePixelsThatAPictureClaims) {
+    using namespace std::string_literals;
+    const TestFolder folder;
+    write_image(folder.path() / "a.exr", 64, 64, pattern_bytes(64, 64));
+    std::string exr = content_of(folder.path() / "a.exr");
+    const std::uint32_t size = 240u << 20;
+    exr.insert(8, "about\0string\0"s + std::string(reinterpret_cast<const char*>(&size), sizeof size));
+    exr.resize(16'384);
+    const std::string text = refusal_of(folder.write("a.exr", exr));
+    EXPECT_NE(text, "read");
+    if (RAYWALK_SANITIZED) return;  // memory has no limits there
+    EXPECT_NE(text.find("it needs too much memory"), std::string::npos) << text;
 }
 
 TEST(ImageTest, AJpegOfHundredsOfScansIsRefused) {

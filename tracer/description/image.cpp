@@ -42,11 +42,11 @@ InputError refusal(const fs::path& file, const SourceLocation& where, const std:
     return InputError(error_at(place, "image " + raywalk::quoted(file.native()) + " " + problem, std::move(advice)));
 }
 
-// What decoding may cost, for a picture of at most so many pixels. Decoders hold the file, its pixels in the file's own
-// precision (up to 4 channels of 4 bytes) and ours; the rest is what a process of so many libraries needs itself.
+// What decoding may cost, for a picture of at most so many pixels. Decoders hold the file; the rest of the memory is
+// what a process of so many libraries needs itself.
 ImageBudget budget_for(std::uint64_t pixels, std::uint64_t file_bytes) {
     return {.pixels = pixels,
-            .memory_bytes = (80ull << 20) + 2 * file_bytes + 24 * pixels,
+            .memory_bytes = (80ull << 20) + 2 * file_bytes,
             .output_bytes = sizeof(ImageReply) + 4 * pixels + 4096,
             .seconds = 6 + file_bytes / (16 << 20)};
 }

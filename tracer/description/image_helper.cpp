@@ -51,6 +51,14 @@ class Input {
     std::size_t size_ = 0;
 };
 
+// The memory that this process may take: `memory_bytes` and that of so many pixels, now or when it allows itself more.
+void limit_memory(std::uint64_t memory_bytes, std::uint64_t pixels, std::uint64_t most_pixels) {
+    if (memory_bytes == 0 || RAYWALK_SANITIZED) return;  // sanitizers map memory of their own
+    const auto with = [&](std::uint64_t count) { return memory_bytes + memory_of_a_pixel * count; };
+    const rlimit both{with(std::min(pixels, most_pixels)), with(most_pixels)};
+    setrlimit(RLIMIT_DATA, &both);
+}
+
 bool write_all(const void* data, std::size_t size) {
     const char* at = static_cast<const char*>(data);
     while (size > 0) {
@@ -73,7 +81,10 @@ int answer_failure(const std::string& reason) {
     return answer(ImageReply::failed, 0, 0, reason.data(), std::min(reason.size(), longest));
 }
 
-int decode(ImageFormat format, std::string_view input, std::uint64_t most_pixels) {
+int decode(ImageFormat format, std::string_view input, std::uint64_t most_pixels, std::uint64_t memory_bytes) {
+    // Until the header is read, and for a small picture always: a damaged one may want gigabytes for a few pixels.
+    constexpr std::uint64_t few_pixels = 1 << 22;
+    limit_memory(memory_bytes, few_pixels, most_pixels);
     use_one_thread();  // whose stacks would count
     std::uint64_t width = 0, height = 0;
     bool too_large = false;
@@ -81,6 +92,7 @@ int decode(ImageFormat format, std::string_view input, std::uint64_t most_pixels
         width = w;
         height = h;
         too_large = w * h > most_pixels;
+        if (!too_large) limit_memory(memory_bytes, std::max(w * h, few_pixels), most_pixels);
         return too_large ? "too large" : "";
     };
     Image image;
@@ -112,15 +124,12 @@ int run(int count, char** words) {
     const auto format = static_cast<ImageFormat>(number(2));
     if (task == "decode") {
         limit(RLIMIT_CORE, 1);
-        if (!RAYWALK_SANITIZED) {  // which maps memory of its own and writes down what ran
-            limit(RLIMIT_DATA, number(4));
-            limit(RLIMIT_FSIZE, number(5));
-        }
+        if (!RAYWALK_SANITIZED) limit(RLIMIT_FSIZE, number(5));  // sanitizers write down what ran
         limit(RLIMIT_CPU, number(6));
     }
     try {
         const Input input;
-        return task == "decode" ? decode(format, input.bytes(), number(3))
+        return task == "decode" ? decode(format, input.bytes(), number(3), number(4))
                                 : encode(input.bytes(), static_cast<int>(number(3)), static_cast<int>(number(4)));
     } catch (const std::bad_alloc&) {
         return answer_failure("it needs too much memory");

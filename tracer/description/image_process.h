@@ -19,10 +19,14 @@ namespace raywalk {
 
 enum class ImageFormat { png, jpeg, tiff, exr, hdr };
 
+// Memory of the helper for each pixel that a picture claims: decoders hold it in the file's own precision (up to 4
+// channels of 4 bytes) and as a texel, and some of them more than once.
+inline constexpr std::uint64_t memory_of_a_pixel = 24;
+
 // What the helper may take for one picture.
 struct ImageBudget {
     std::uint64_t pixels = 0;        // more in the header: refused
-    std::uint64_t memory_bytes = 0;  // data of the process; 0: no limit
+    std::uint64_t memory_bytes = 0;  // data of the process, beside that for pixels; 0: no limit
     std::uint64_t output_bytes = 0;  // 0: no limit
     std::uint64_t seconds = 0;       // of CPU time; 0: no limit
 };
