@@ -5,7 +5,6 @@
 set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
 source "$root/.ci/prepare.sh"
-bench_packages=(libembree-dev libtinyobjloader-dev libassimp-dev)
 
 whole=yes
 for option in "$@"; do

@@ -38,9 +38,16 @@ build_with_tests() { configure "$1" RAYWALK_TESTS=ON && build "$1"; }
 
 sources() { git -C "$root" ls-files -z -- '*.h' '*.cpp' '*.inl'; }
 check_format() { (cd "$root" && sources | xargs -0 -r clang-format --dry-run --Werror); }
-lint() {  # what the release preset builds
-    grep -o '"file": "[^"]*"' "$root/build/release/compile_commands.json" | cut -d'"' -f4 | sort -u |
-        xargs -d '\n' -r -n 4 -P "$jobs" clang-tidy -p "$root/build/release" --quiet --warnings-as-errors='*'
+# Each source that some preset builds, the first time it is met. The benchmark and the fuzzers are only configured: to
+# read a source it is enough to know how it would be compiled.
+lint() {
+    configure bench && configure fuzz || return
+    local preset
+    for preset in release bench fuzz; do
+        grep -o '"file": "[^"]*"' "$root/build/$preset/compile_commands.json" | cut -d'"' -f4 | sed "s|^|$preset |"
+    done | sort -u -k 2 -s |
+        xargs -d '\n' -r -n 1 -P "$jobs" bash -c \
+            'clang-tidy -p "$0/build/${1%% *}" --quiet --warnings-as-errors="*" "${1#* }"' "$root"
 }
 
 # What is built runs at once, to make the meshes and textures of the scenes.
@@ -48,7 +55,7 @@ build_for_tsan() { TSAN_OPTIONS=ignore_noninstrumented_modules=1 build_with_test
 
 vulkan_driver=$(vulkan_driver_package)
 packages=("${build_packages[@]}" "${test_packages[@]}" ${vulkan_driver:+"$vulkan_driver"})
-[[ $full == yes ]] && packages+=("${full_test_packages[@]}")
+[[ $full == yes ]] && packages+=("${full_test_packages[@]}" "${bench_packages[@]}")
 need_packages "${packages[@]}" || exit 1
 provide_runtime_folder
 

@@ -61,8 +61,9 @@ class Capture {
 
 void Capture::save(const std::filesystem::path& file) {
     const Film& film = renderer_.film();
+    const Saving saving = interrupted() ? Saving::urgent : Saving::unhurried;
     if (is_float_extension(file)) {
-        write_image(file, mean_radiance(film));
+        write_image(file, radiance_rows(film), saving);
         return;
     }
     publish_film(presenter_.exchange(), presenter_.preferred_content(), {.samples = renderer_.samples()}, film,
@@ -72,7 +73,7 @@ void Capture::save(const std::filesystem::path& file) {
     rgb.reserve(words.size() * 3);
     for (const std::uint32_t word : words)
         for (const int shift : {16, 8, 0}) rgb.push_back(static_cast<std::uint8_t>(word >> shift));
-    write_image(file, film.width, film.height, rgb);
+    write_image(file, film.width, film.height, rgb, saving);
 }
 
 int capture(const Options& options, const LoadedScene& loaded) {

@@ -28,13 +28,14 @@ void render(Renderer& renderer, std::uint32_t samples, bool quiet) {
 
 void save(const Renderer& renderer, const Options& options) {
     const Film& film = renderer.film();
+    const Saving saving = interrupted() ? Saving::urgent : Saving::unhurried;
     if (is_float_extension(options.output)) {
-        write_image(options.output, mean_radiance(film));
+        write_image(options.output, radiance_rows(film), saving);
         return;
     }
     const Exposure exposure = options.exposure.value_or(Exposure{});
     const float factor = exposure.value ? *exposure.value : normalizing_exposure(film);
-    write_image(options.output, film.width, film.height, display_values(film, renderer.kernels(), factor));
+    write_image(options.output, film.width, film.height, display_values(film, renderer.kernels(), factor), saving);
 }
 
 // Of all the samples asked for, how many are there: 0..1.

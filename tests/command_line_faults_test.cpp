@@ -199,6 +199,19 @@ TEST_F(CommandLine, AnInterruptSavesWhatThereIsAndEndsWith130) {
     }
 }
 
+TEST_F(CommandLine, AnInterruptSavesEveryFormatWhole) {
+    for (const std::string name : {"a.png", "a.jpg", "a.exr", "a.hdr", "a.tif", "a.pfm"}) {
+        const Outcome outcome =
+            disturbed(process({"room.scene", "-render", name, "--spp", "10000000", "--size", "301x203"}),
+                      [&](int id) { kill(id, SIGINT); });
+        EXPECT_EQ(outcome.exit_code, 130) << name;
+        if (name == "a.pfm") continue;  // which nobody reads here
+        EXPECT_GT(largest_channel(pixels(name)), 0) << name;
+    }
+    EXPECT_EQ(fs::file_size(path("a.pfm")), std::string("PF\n301 203\n-1.0\n").size() + 301 * 203 * 12);
+    EXPECT_EQ(files(), 7u);
+}
+
 TEST_F(CommandLine, ASecondInterruptEndsAtOnceAndLeavesAWholeFile) {
     const std::string old = picture({});
     const Outcome outcome =

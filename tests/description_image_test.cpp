@@ -5,9 +5,11 @@
 #include <bit>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 
 #include "tests/description_folder.h"
 #include "tracer/description/image.h"
+#include "tracer/ground/sanitized.h"
 #include "tracer/ground/whole_file.h"
 
 namespace raywalk {
@@ -177,6 +179,69 @@ TEST(ImageTest, AHeaderThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
     EXPECT_EQ(refusal_of(folder.path() / "c.png", limits), "read");
     limits.image_bytes = 10;
     EXPECT_NE(refusal_of(folder.path() / "c.png", limits).find("--max-image-bytes"), std::string::npos);
+}
+
+TEST_P(EveryFormat, MostlyHolesIsRefusedUnread) {
+    const TestFolder folder;
+    const auto file = folder.path() / ("a" + std::string(GetParam()));
+    write_image(file, 64, 64, pattern_bytes(64, 64));
+    std::filesystem::resize_file(file, 900u << 20);
+    rusage before{}, after{};
+    getrusage(RUSAGE_SELF, &before);
+    const std::string text = refusal_of(file);
+    getrusage(RUSAGE_SELF, &after);
+    EXPECT_NE(text.find("has 943718400 bytes, but only "), std::string::npos) << text;
+    EXPECT_NE(text.find("cp --sparse=never"), std::string::npos) << text;
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 << 10);  // KB
+    std::filesystem::resize_file(file, std::uintmax_t{4} << 30);
+    EXPECT_NE(refusal_of(file).find("has 4294967296 bytes"), std::string::npos);
+}
+
+// A text of 240 MB in the header of a file of 16 KB, which could hold a picture that may take as much; this one is
+// small.
+TEST(ImageTest, MemoryIsThatOfThePixelsThatAPictureClaims) {
+    using namespace std::string_literals;
+    const TestFolder folder;
+    write_image(folder.path() / "a.exr", 64, 64, pattern_bytes(64, 64));
+    std::string exr = content_of(folder.path() / "a.exr");
+    const std::uint32_t size = 240u << 20;
+    exr.insert(8, "about\0string\0"s + std::string(reinterpret_cast<const char*>(&size), sizeof size));
+    exr.resize(16'384);
+    const std::string text = refusal_of(folder.write("a.exr", exr));
+    EXPECT_NE(text, "read");
+    if (RAYWALK_SANITIZED) return;  // memory has no limits there
+    EXPECT_NE(text.find("it needs too much memory"), std::string::npos) << text;
+}
+
+TEST(ImageTest, AJpegOfHundredsOfScansIsRefused) {
+    const TestFolder folder;
+    const std::string jpeg = content_of(RAYWALK_ROOT "/tests/fuzz/corpus/image/progressive.jpg");
+    const std::size_t scan = jpeg.find("\xFF\xDA");  // the first one, up to the next scan or its table
+    const std::size_t end = std::min(jpeg.find("\xFF\xDA", scan + 2), jpeg.find("\xFF\xC4", scan));
+    ASSERT_LT(end, jpeg.size());
+    const auto with_scans_more = [&](int more) {
+        std::string bytes = jpeg.substr(0, end);
+        for (int i = 0; i < more; ++i) bytes += jpeg.substr(scan, end - scan);
+        return folder.write("a.jpg", bytes + jpeg.substr(end));
+    };
+    EXPECT_EQ(refusal_of(with_scans_more(0)), "read");
+    EXPECT_EQ(refusal_of(with_scans_more(50)), "read");
+    EXPECT_NE(refusal_of(with_scans_more(200)).find("it has more than 100 scans"), std::string::npos);
+    EXPECT_NE(refusal_of(with_scans_more(20'000)).find("it has more than 100 scans"), std::string::npos);
+}
+
+// As cp makes them of long stretches of zeros.
+TEST(ImageTest, AFewHolesAreNoFault) {
+    const TestFolder folder;
+    const int side = 1100;  // 14 MB
+    write_image(folder.path() / "a.tif", FloatImage{side, side, std::vector<float>(side * side * 3)}, Saving::urgent);
+    const std::string bytes = content_of(folder.path() / "a.tif");
+    const auto size = std::filesystem::file_size(folder.path() / "a.tif");
+    const auto file = folder.write("b.tif", bytes.substr(0, 8));
+    std::filesystem::resize_file(file, size - 4096);
+    std::ofstream(file, std::ios::app | std::ios::binary) << bytes.substr(size - 4096);
+    EXPECT_EQ(content_of(file), bytes);
+    EXPECT_EQ(refusal_of(file), "read");
 }
 
 TEST(ImageTest, WhatIsNoRegularFileIsRefusedAtOnce) {

@@ -53,5 +53,24 @@ TEST(Messages, TheCaretStandsUnderTheWordWhateverStandsBeforeIt) {
     }
 }
 
+// The lines under a message, "wrong", about the word `bad` after `before`.
+std::string shown(const std::string& before, const std::string& bad) {
+    Diagnostic diagnostic = error_at({"x", 1, before.size() + 1, bad.size()}, "wrong");
+    quote_line(diagnostic, before + bad + " after");
+    return to_string(diagnostic)
+        .substr(std::string("x:1:1: error: wrong").size() + std::to_string(before.size() + 1).size() - 1);
+}
+
+TEST(Messages, TheCaretCountsTheColumnsThatCharactersTake) {
+    EXPECT_EQ(shown("\u7d20\u6750 ", "bad"), "\n  \u7d20\u6750 bad after\n       ^~~");           // two columns each
+    EXPECT_EQ(shown("\uff21\ud55c ", "bad"), "\n  \uff21\ud55c bad after\n       ^~~");           // full width, Hangul
+    EXPECT_EQ(shown("e\u0301\u0323 ", "bad"), "\n  e\u0301\u0323 bad after\n    ^~~");            // two marks on one e
+    EXPECT_EQ(shown("\u0e17\u0e35\u0e48 ", "bad"), "\n  \u0e17\u0e35\u0e48 bad after\n    ^~~");  // Thai
+    EXPECT_EQ(shown("\U0001F4A1\t\u7d20 ", "bad"), "\n  \U0001F4A1\t\u7d20 bad after\n    \t   ^~~");
+    EXPECT_EQ(shown("a ", "\u7d20\u6750"), "\n  a \u7d20\u6750 after\n    ^~~~");          // waves under the whole word
+    EXPECT_EQ(shown("\u00e9 ", "\uff76\uff9e"), "\n  \u00e9 \uff76\uff9e after\n    ^~");  // half width
+    EXPECT_EQ(shown("a", "\u0301"), "\n  a\u0301 after\n   ^");  // there is a caret under a mark, too
+}
+
 }  // namespace
 }  // namespace raywalk

@@ -34,6 +34,27 @@ TEST(WholeFile, MakesAndReplacesFilesAndLeavesNothingElse) {
     EXPECT_EQ(files_in(folder.path()), 1u);
 }
 
+TEST(WholeFile, IsThereWhenItIsFinishedAndNotBefore) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "a.txt";
+    write_file(file, "old");
+    {
+        WholeFile abandoned(file);
+        abandoned.append("new");
+    }
+    EXPECT_EQ(read_file(file), "old");
+    WholeFile whole(file);
+    whole.append("one ");
+    whole.append("two ");
+    whole.append("six");
+    EXPECT_EQ(whole.size(), 11u);
+    whole.overwrite(4, "TWO");
+    EXPECT_EQ(read_file(file), "old");
+    whole.finish(Durability::in_system);
+    EXPECT_EQ(read_file(file), "one TWO six");
+    EXPECT_EQ(files_in(folder.path()), 1u);
+}
+
 TEST(WholeFile, NewFilesHaveTheUsualRights) {
     const TemporaryFolder folder;
     const mode_t mask = umask(022);
@@ -116,6 +137,19 @@ TEST(WholeFile, APipeThatNobodyReadsIsNotWaitedFor) {
         }
     reader.join();
     EXPECT_EQ(got, text);
+
+    std::thread another_reader([&] { got = read_file(pipe); });
+    for (bool done = false; !done;) try {
+            WholeFile whole(pipe);
+            whole.append("one two");
+            whole.overwrite(0, "ONE");
+            whole.finish();
+            done = true;
+        } catch (const WorkError&) {
+            std::this_thread::yield();
+        }
+    another_reader.join();
+    EXPECT_EQ(got, "ONE two");
 }
 
 }  // namespace

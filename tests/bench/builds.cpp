@@ -16,7 +16,7 @@ std::vector<Pass> build_passes(const Geometry& geometry, const Shapes& shapes, c
                                std::array<double, 5>& bytes) {
     std::vector<Pass> passes;
     for (std::size_t a = 0; a < 2; ++a) {
-        passes.push_back([&, a, clock] {
+        passes.emplace_back([&, a, clock] {
             BuildStatistics statistics;
             const double start = seconds(clock);
             const Hierarchy hierarchy =
@@ -27,7 +27,7 @@ std::vector<Pass> build_passes(const Geometry& geometry, const Shapes& shapes, c
         });
     }
     for (std::size_t q = 0; q < std::size(qualities); ++q) {
-        passes.push_back([&, q, clock] {
+        passes.emplace_back([&, q, clock] {
             const EmbreeScene scene(device, geometry, {qualities[q], EmbreeSpheres::callback}, clock);
             bytes[2 + q] = static_cast<double>(scene.bytes());
             return scene.build_seconds();

@@ -31,6 +31,7 @@ Child start(const std::vector<std::string>& arguments) {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
     std::vector<char*> words;
+    words.reserve(arguments.size() + 1);
     for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
     words.push_back(nullptr);
     Child child{.process = 0, .messages = ends[0]};
@@ -95,7 +96,9 @@ FirstPictureRow measure_first_picture(const std::filesystem::path& program, cons
     omp_set_num_threads(1);
     const FrameScene frame = read_frame_scene(scene);
     std::vector<double> compile_times;
-    for (int round = 0; round < 3; ++round)
+    constexpr int compilations = 3;
+    compile_times.reserve(compilations);
+    for (int i = 0; i < compilations; ++i)
         compile_times.push_back(timed(Clock::process_cpu, [&] { compile_for(frame, CompileOptions{}.accelerator); })());
     omp_set_num_threads(threads);
     row.parse_and_build = spread_of(compile_times).median;

@@ -127,10 +127,11 @@ std::string svg_of(const std::vector<Panel>& panels, int columns) {
         panel_width * columns, panel_height * rows);
     svg += "<style>text { fill: #333; stroke: none } g[fill] > text { fill: inherit }</style>\n";
     svg += "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-    for (int i = 0; i < count; ++i)
-        svg +=
-            format("<g transform=\"translate(%.0f %.0f)\">\n", i % columns * panel_width, i / columns * panel_height) +
-            panel_svg(panels[static_cast<std::size_t>(i)]) + "</g>\n";
+    for (int i = 0; i < count; ++i) {
+        const int column = i % columns, row = i / columns;
+        svg += format("<g transform=\"translate(%.0f %.0f)\">\n", column * panel_width, row * panel_height) +
+               panel_svg(panels[static_cast<std::size_t>(i)]) + "</g>\n";
+    }
     return svg + "</svg>\n";
 }
 

@@ -54,6 +54,7 @@ std::vector<EmbreeContender> fastest_two(const std::vector<EmbreeContender>& con
     const RaySet sample = thinned(set, 5);
     HitBlocks hits(sample.rays.size());
     std::vector<Pass> passes;
+    passes.reserve(contenders.size());
     for (const EmbreeContender& c : contenders)
         passes.push_back(timed(Clock::thread_cpu, [&] { trace(c, triangle_count, sample, hits); }));
     const auto times = take_turns(passes, 3);

@@ -1,17 +1,12 @@
 #include "tracer/description/image.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
 #include <cstring>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "tracer/description/image_process.h"
 #include "tracer/ground/file_bytes.h"
-#include "tracer/ground/whole_file.h"
 
 namespace raywalk {
 
@@ -37,53 +32,6 @@ std::optional<ImageFormat> format_of(std::string_view bytes) {
     return std::nullopt;
 }
 
-// What a file of each extension holds. No format: PFM, which is written here.
-struct Extension {
-    std::string_view name;
-    std::optional<ImageFormat> format;
-    bool floats;
-};
-constexpr Extension extensions[] = {
-    {".png", ImageFormat::png, false},  {".jpg", ImageFormat::jpeg, false}, {".jpeg", ImageFormat::jpeg, false},
-    {".exr", ImageFormat::exr, true},   {".hdr", ImageFormat::hdr, true},   {".tif", ImageFormat::tiff, true},
-    {".tiff", ImageFormat::tiff, true}, {".pfm", std::nullopt, true},
-};
-
-const Extension* extension_of(const fs::path& file) {
-    std::string name = file.extension().string();
-    std::ranges::transform(name, name.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    const auto found = std::ranges::find(extensions, name, &Extension::name);
-    return found == std::end(extensions) ? nullptr : found;
-}
-
-// Portable float map: rows bottom to top; the negative scale says little-endian.
-std::vector<unsigned char> encode_pfm(const FloatImage& image) {
-    static_assert(std::endian::native == std::endian::little);
-    const std::string header = "PF\n" + std::to_string(image.width) + " " + std::to_string(image.height) + "\n-1.0\n";
-    const std::size_t row = static_cast<std::size_t>(image.width) * 3 * sizeof(float);
-    std::vector<unsigned char> bytes(header.size() + row * static_cast<std::size_t>(image.height));
-    std::memcpy(bytes.data(), header.data(), header.size());
-    unsigned char* to = bytes.data() + header.size();
-    for (std::size_t y = static_cast<std::size_t>(image.height); y-- > 0; to += row)
-        std::memcpy(to, image.rgb.data() + y * row / sizeof(float), row);
-    return bytes;
-}
-
-std::vector<std::uint8_t> display_bytes(const FloatImage& image) {
-    std::vector<std::uint8_t> bytes(image.rgb.size());
-    std::ranges::transform(image.rgb, bytes.begin(), [](float v) {
-        return v > 0 ? static_cast<std::uint8_t>(std::lround(std::min(v, 1.0f) * 255.0f)) : std::uint8_t{0};
-    });
-    return bytes;
-}
-
-const Extension& require_extension(const fs::path& file) {
-    if (const Extension* extension = extension_of(file)) return *extension;
-    throw WorkError("cannot write " + quoted_name(file.string()) +
-                    ": its extension is none of .png .jpg .exr .pfm .hdr .tif");
-}
-
 constexpr const char* readable_formats = "expected a PNG, JPEG, TIFF, EXR or HDR file";
 
 constexpr const char* other_image = "save it again with another program, or try another image";
@@ -94,13 +42,13 @@ InputError refusal(const fs::path& file, const SourceLocation& where, const std:
     return InputError(error_at(place, "image " + raywalk::quoted(file.native()) + " " + problem, std::move(advice)));
 }
 
-// What decoding may cost, for a picture of at most so many pixels. Decoders hold the file, its pixels in the file's own
-// precision (up to 4 channels of 4 bytes) and ours; the rest is what a process of so many libraries needs itself.
+// What decoding may cost, for a picture of at most so many pixels. Decoders hold the file; the rest of the memory is
+// what a process of so many libraries needs itself.
 ImageBudget budget_for(std::uint64_t pixels, std::uint64_t file_bytes) {
     return {.pixels = pixels,
-            .memory_bytes = (80ull << 20) + 2 * file_bytes + 24 * pixels,
+            .memory_bytes = (80ull << 20) + 2 * file_bytes,
             .output_bytes = sizeof(ImageReply) + 4 * pixels + 4096,
-            .seconds = 6 + file_bytes / (1 << 20)};
+            .seconds = 6 + file_bytes / (16 << 20)};
 }
 
 ImageResult decode(ImageFormat format, std::string_view bytes, const fs::path& file, const SourceLocation& where,
@@ -122,25 +70,6 @@ Image texels_of(const ImageResult& result, const fs::path& file, const SourceLoc
     std::memcpy(image.texels.data(), body.data(), body.size());
     for (std::uint32_t& texel : image.texels) texel &= 0xFF'FFFF;
     return image;
-}
-
-void write_bytes(const fs::path& file, std::span<const unsigned char> bytes) {
-    write_whole(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-}
-
-void encode_and_write(const fs::path& file, ImageFormat format, int width, int height, bool floats,
-                      std::string_view rgb) {
-    std::string problem;
-    try {
-        const ImageResult result = encode_in_process(format, width, height, floats, rgb);
-        const bool replied = result.end.empty();
-        if (replied && result.reply.status == ImageReply::done) return write_whole(file, result.body());
-        problem = replied ? printable(result.body()) : result.end;
-    } catch (const WorkError& error) {
-        problem = error.what();
-        if (problem.starts_with("cannot write")) throw;
-    }
-    throw WorkError("cannot write " + quoted_name(file.string()) + ": " + problem);
 }
 
 }  // namespace
@@ -171,32 +100,6 @@ Image read_image(const fs::path& file, const Limits& limits, const SourceLocatio
         throw refusal(file, where, problem.what(),
                       problem.too_large ? how_to_raise(limits, &Limits::image_bytes) : readable_formats);
     }
-}
-
-bool is_image_extension(const fs::path& file) { return extension_of(file) != nullptr; }
-
-bool is_float_extension(const fs::path& file) {
-    const Extension* extension = extension_of(file);
-    return extension && extension->floats;
-}
-
-void write_image(const fs::path& file, const FloatImage& image) {
-    const Extension& extension = require_extension(file);
-    if (!extension.format) return write_bytes(file, encode_pfm(image));
-    if (!extension.floats) return write_image(file, image.width, image.height, display_bytes(image));
-    const std::string_view rgb(reinterpret_cast<const char*>(image.rgb.data()), image.rgb.size() * sizeof(float));
-    encode_and_write(file, *extension.format, image.width, image.height, true, rgb);
-}
-
-void write_image(const fs::path& file, int width, int height, std::span<const std::uint8_t> rgb) {
-    const Extension& extension = require_extension(file);
-    if (extension.floats) {
-        FloatImage image{width, height, std::vector<float>(rgb.size())};
-        std::ranges::transform(rgb, image.rgb.begin(), [](std::uint8_t v) { return static_cast<float>(v) / 255.0f; });
-        return write_image(file, image);
-    }
-    const std::string_view bytes(reinterpret_cast<const char*>(rgb.data()), rgb.size());
-    encode_and_write(file, *extension.format, width, height, false, bytes);
 }
 
 }  // namespace raywalk

@@ -20,12 +20,8 @@ using ImageRefusal = std::function<std::string(std::uint64_t width, std::uint64_
 // clamped and NaN is 0. Returns the reason of a failure, empty on success. Throws nothing but std::bad_alloc.
 std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const ImageRefusal& refusal, Image& image);
 
-// Encodes `rgb`, 3 values a pixel, row 0 on top: floats for TIFF (32 bit), EXR (32 bit, lossless) and HDR, bytes for
-// PNG and JPEG. Returns as decode_pixels does.
-std::string encode_floats(ImageFormat format, int width, int height, std::span<const float> rgb,
-                          std::vector<unsigned char>& bytes);
-std::string encode_bytes(ImageFormat format, int width, int height, std::span<const std::uint8_t> rgb,
-                         std::vector<unsigned char>& bytes);
+// Encodes `rgb`, 3 values a pixel, row 0 on top, as JPEG. Returns as decode_pixels does.
+std::string encode_bytes(int width, int height, std::span<const std::uint8_t> rgb, std::vector<unsigned char>& bytes);
 
 // Keeps the codecs to the calling thread.
 void use_one_thread();

@@ -35,6 +35,17 @@ void on_message(j_common_ptr jpeg, int level) {
         reinterpret_cast<JpegErrors*>(jpeg->err)->incomplete = true;
 }
 
+// Each scan of a progressive JPEG goes over the whole picture, however few bytes it has: a small file of thousands
+// would take minutes. Programs write 10 or 20, and 64 when they try hard.
+constexpr int most_scans = 100;
+
+void on_progress(j_common_ptr jpeg) {
+    if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= most_scans) return;
+    auto* errors = reinterpret_cast<JpegErrors*>(jpeg->err);
+    std::snprintf(errors->message.data(), errors->message.size(), "it has more than %d scans", most_scans);
+    std::longjmp(errors->exit, 1);
+}
+
 void prepare(JpegErrors& errors) {
     jpeg_std_error(&errors.manager);
     errors.manager.error_exit = on_error;
@@ -46,6 +57,7 @@ void prepare(JpegErrors& errors) {
 bool read_header(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::span<const char> bytes) {
     if (setjmp(errors.exit)) return false;
     jpeg_create_decompress(&jpeg);
+    jpeg.progress = static_cast<jpeg_progress_mgr*>(jpeg.client_data);  // kept where creation clears the rest
     jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
     jpeg_read_header(&jpeg, TRUE);
     const bool four_inks = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
@@ -108,8 +120,11 @@ bool write_all(jpeg_compress_struct& jpeg, JpegErrors& errors, const std::uint8_
 std::string decode_jpeg(std::span<const char> bytes, const ImageRefusal& refusal, Image& image) {
     jpeg_decompress_struct jpeg{};
     JpegErrors errors{};
+    jpeg_progress_mgr progress{};
     prepare(errors);
+    progress.progress_monitor = on_progress;
     jpeg.err = &errors.manager;
+    jpeg.client_data = &progress;
     std::string problem = decode(jpeg, errors, bytes, refusal, image);
     jpeg_destroy_decompress(&jpeg);
     return problem;

@@ -15,7 +15,6 @@ namespace {
 struct PngTask {
     const char* at = nullptr;  // input not yet read
     std::size_t left = 0;
-    std::vector<unsigned char>* output = nullptr;
     std::string problem = {};
     png_structp png = nullptr;
     png_infop info = nullptr;
@@ -37,17 +36,6 @@ void on_read(png_structp png, png_bytep to, png_size_t size) {
     task.left -= size;
 }
 
-void on_write(png_structp png, png_bytep from, png_size_t size) {
-    auto& task = *static_cast<PngTask*>(png_get_io_ptr(png));
-    try {
-        task.output->insert(task.output->end(), from, from + size);
-    } catch (const std::bad_alloc&) {
-        png_error(png, "it needs too much memory");
-    }
-}
-
-void on_flush(png_structp) {}
-
 // Up to the header: width, height, and rows that will come as red, green, blue and something, as texels have it.
 bool read_header(PngTask& task) {
     if (setjmp(png_jmpbuf(task.png))) return false;
@@ -68,21 +56,6 @@ bool read_header(PngTask& task) {
 bool read_rows(PngTask& task) {
     if (setjmp(png_jmpbuf(task.png))) return false;
     png_read_image(task.png, task.rows.data());
-    return true;
-}
-
-bool write_all(PngTask& task, png_uint_32 width, png_uint_32 height) {
-    if (setjmp(png_jmpbuf(task.png))) return false;
-    png_set_write_fn(task.png, &task, on_write, on_flush);
-    png_set_IHDR(task.png, task.info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    // A quarter of the time of the usual level 6 and five filters, a few per cent larger: a picture of 4096 x 4096 is
-    // saved in a second.
-    png_set_compression_level(task.png, 2);
-    png_set_filter(task.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
-    png_write_info(task.png, task.info);
-    png_write_image(task.png, task.rows.data());
-    png_write_end(task.png, nullptr);
     return true;
 }
 
@@ -111,19 +84,6 @@ std::string decode_png(std::span<const char> bytes, const ImageRefusal& refusal,
     png_destroy_read_struct(&task.png, &task.info, nullptr);
     for (std::uint32_t& texel : image.texels) texel &= 0xFF'FFFF;  // without alpha
     return problem;
-}
-
-std::string encode_png(int width, int height, std::span<const std::uint8_t> rgb, std::vector<unsigned char>& bytes) {
-    PngTask task{.output = &bytes};
-    task.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &task, on_error, on_warning);
-    if (task.png) task.info = png_create_info_struct(task.png);
-    if (!task.info) throw std::bad_alloc();
-    const std::size_t row = static_cast<std::size_t>(width) * 3;
-    for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
-        task.rows.push_back(const_cast<png_bytep>(rgb.data() + y * row));  // libpng only reads
-    const bool written = write_all(task, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height));
-    png_destroy_write_struct(&task.png, &task.info);
-    return written ? std::string() : task.problem;
 }
 
 }  // namespace raywalk

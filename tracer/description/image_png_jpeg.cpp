@@ -16,14 +16,8 @@ std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const
     return format == ImageFormat::jpeg ? decode_jpeg(bytes, refusal, image) : neither;
 }
 
-std::string encode_bytes(ImageFormat format, int width, int height, std::span<const std::uint8_t> rgb,
-                         std::vector<unsigned char>& bytes) {
-    if (format == ImageFormat::png) return encode_png(width, height, rgb, bytes);
-    return format == ImageFormat::jpeg ? encode_jpeg(width, height, rgb, bytes) : neither;
-}
-
-std::string encode_floats(ImageFormat, int, int, std::span<const float>, std::vector<unsigned char>&) {
-    return neither;
+std::string encode_bytes(int width, int height, std::span<const std::uint8_t> rgb, std::vector<unsigned char>& bytes) {
+    return encode_jpeg(width, height, rgb, bytes);
 }
 
 }  // namespace raywalk

@@ -144,8 +144,8 @@ ImageResult decode_in_process(ImageFormat format, std::string_view input, const 
                input);
 }
 
-ImageResult encode_in_process(ImageFormat format, int width, int height, bool floats, std::string_view input) {
-    return run(format, {"encode", std::to_string(width), std::to_string(height), floats ? "floats" : "bytes"}, input);
+ImageResult encode_in_process(int width, int height, std::string_view input) {
+    return run(ImageFormat::jpeg, {"encode", std::to_string(width), std::to_string(height)}, input);
 }
 
 }  // namespace raywalk

@@ -1,7 +1,8 @@
-// Pictures are decoded and encoded by a helper program, run once for each: what a hostile picture does to a decoder (a
+// Pictures are decoded by a helper program, run once for each: what a hostile picture does to a decoder (a
 // crash, a hang, gigabytes) ends there, within limits, as a message. There are two. raywalk_png_jpeg starts in a
 // millisecond or two; raywalk_openimageio, for the other formats, brings OpenImageIO's 260 libraries along, which takes
-// 0.2-0.35 s and would be part of every start if the tracer itself were linked with them.
+// 0.2-0.35 s and would be part of every start if the tracer itself were linked with them. JPEG is encoded there too, by
+// the same library.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +19,14 @@ namespace raywalk {
 
 enum class ImageFormat { png, jpeg, tiff, exr, hdr };
 
+// Memory of the helper for each pixel that a picture claims: decoders hold it in the file's own precision (up to 4
+// channels of 4 bytes) and as a texel, and some of them more than once.
+inline constexpr std::uint64_t memory_of_a_pixel = 24;
+
 // What the helper may take for one picture.
 struct ImageBudget {
     std::uint64_t pixels = 0;        // more in the header: refused
-    std::uint64_t memory_bytes = 0;  // data of the process; 0: no limit
+    std::uint64_t memory_bytes = 0;  // data of the process, beside that for pixels; 0: no limit
     std::uint64_t output_bytes = 0;  // 0: no limit
     std::uint64_t seconds = 0;       // of CPU time; 0: no limit
 };
@@ -44,6 +49,7 @@ struct ImageResult {
 
 // Runs the helper on `input`. Throws WorkError when it cannot be run, which is no fault of the picture.
 ImageResult decode_in_process(ImageFormat format, std::string_view input, const ImageBudget& budget);
-ImageResult encode_in_process(ImageFormat format, int width, int height, bool floats, std::string_view input);
+// 8-bit RGB to JPEG.
+ImageResult encode_in_process(int width, int height, std::string_view input);
 
 }  // namespace raywalk

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tracer/ground/character_width.h"
 #include "tracer/ground/utf8.h"
 
 namespace raywalk {
@@ -14,15 +15,33 @@ constexpr std::size_t shown_word = 40;    // bytes of a long word
 // True at the first byte of a UTF-8 character.
 bool starts_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
 
-// What stands under `text` up to the caret: tabs under tabs, one blank under each other character.
-std::string margin_under(std::string_view text) {
-    std::string margin;
-    for (const char c : text)
-        if (c == '\t' || starts_character(c)) margin += c == '\t' ? '\t' : ' ';
-    return margin;
+// Calls visit(character) for each character of UTF-8.
+template <class Visit>
+void for_each_character(std::string_view text, const Visit& visit) {
+    while (!text.empty()) {
+        const std::size_t length = std::max<std::size_t>(utf8_length(text), 1);
+        visit(text.substr(0, length));
+        text.remove_prefix(length);
+    }
 }
 
-std::size_t characters(std::string_view text) { return std::ranges::count_if(text, starts_character); }
+std::size_t columns(std::string_view text) {
+    std::size_t count = 0;
+    for_each_character(text, [&](std::string_view c) { count += static_cast<std::size_t>(columns_of(c)); });
+    return count;
+}
+
+// What stands under `text` up to the caret: tabs under tabs, under each other character as many blanks as it is wide.
+std::string margin_under(std::string_view text) {
+    std::string margin;
+    for_each_character(text, [&](std::string_view c) {
+        if (c == "\t")
+            margin += '\t';
+        else
+            margin.append(static_cast<std::size_t>(columns_of(c)), ' ');
+    });
+    return margin;
+}
 
 // True for a character (whole, UTF-8) that would steer a terminal rather than be seen: the control characters but tab,
 // and those of Unicode that end lines or turn the direction of text (Boucher and Anderson, Trojan Source, 2021).
@@ -44,7 +63,7 @@ std::string caret_lines(const Diagnostic& d) {
     const std::string before = d.skipped > 0 ? "..." : "";
     return "\n  " + before + printable(line) + "\n  " + std::string(before.size(), ' ') +
            margin_under(printable(line.substr(0, start))) + "^" +
-           std::string(std::max<std::size_t>(characters(under), 1) - 1, '~');
+           std::string(std::max<std::size_t>(columns(under), 1) - 1, '~');
 }
 
 std::string joined(const std::vector<Diagnostic>& diagnostics) {
@@ -70,14 +89,12 @@ Diagnostic error_of_file(std::string file, std::string what, std::string expecte
 std::string printable(std::string_view text) {
     std::string result;
     result.reserve(text.size());
-    while (!text.empty()) {
-        const std::size_t length = utf8_length(text);
-        if (length == 0 || steers_terminal(text.substr(0, length)))
+    for_each_character(text, [&](std::string_view character) {
+        if (utf8_length(character) == 0 || steers_terminal(character))
             result += '?';
         else
-            result += text.substr(0, length);
-        text.remove_prefix(std::max<std::size_t>(length, 1));
-    }
+            result += character;
+    });
     return result;
 }
 

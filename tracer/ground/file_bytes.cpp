@@ -57,10 +57,31 @@ long read_piece(int fd, char* into, std::size_t begin, std::size_t end) {
     return static_cast<long>(done - begin);
 }
 
-// True if a part of a large file was never written. Such a hole reads as bytes of zero, which no text has.
-bool has_hole(int fd, std::uint64_t size) {
-    constexpr std::uint64_t worth_a_look = 1 << 20;
-    return size >= worth_a_look && static_cast<std::uint64_t>(lseek(fd, 0, SEEK_HOLE)) < size;
+// Bytes of the file that were ever written. The others are holes: they take no space on the disk, but memory and time
+// when they are read, as bytes of zero.
+std::uint64_t written_bytes(int fd, std::uint64_t size) {
+    std::uint64_t count = 0;
+    for (std::uint64_t at = 0; at < size;) {
+        const off_t data = lseek(fd, static_cast<off_t>(at), SEEK_DATA);
+        if (data < 0 && errno == ENXIO) break;  // a hole up to the end
+        const off_t hole = data < 0 ? -1 : lseek(fd, data, SEEK_HOLE);
+        if (hole < 0) return size;  // nobody knows here
+        count += static_cast<std::uint64_t>(hole - data);
+        at = static_cast<std::uint64_t>(hole);
+    }
+    return count;
+}
+
+// Throws for a file that would take much more memory than it takes space. No text has bytes of zero; other files have
+// long stretches of them now and then, which some copying programs turn into holes.
+void refuse_holes(int fd, std::uint64_t size, bool text) {
+    constexpr std::uint64_t worth_a_look = 1 << 20, tolerable = 16 << 20;
+    if (size < worth_a_look) return;
+    const std::uint64_t written = written_bytes(fd, size);
+    if (text && written < size) throw FileProblem("has holes, so it is no text");
+    if (written < size / 2 && size - written > tolerable)
+        throw FileProblem("has " + std::to_string(size) + " bytes, but only " + std::to_string(written) +
+                          " were ever written; if it is right, copy it with cp --sparse=never");
 }
 
 }  // namespace
@@ -82,7 +103,7 @@ FileBytes read_bytes(const std::filesystem::path& file, std::uint64_t most_bytes
     if (std::string kind = kind_problem(before.st_mode); !kind.empty()) throw FileProblem(kind);
     const auto size = static_cast<std::uint64_t>(before.st_size);
     if (size > most_bytes) throw FileProblem("has " + std::to_string(size) + " bytes", true);
-    if (text && has_hole(fd.get(), size)) throw FileProblem("has holes, so it is no text");
+    refuse_holes(fd.get(), size, text);
 
     FileBytes bytes(size);
     std::atomic<long> error{0};

@@ -36,10 +36,11 @@ class FileProblem : public std::runtime_error {
     bool too_large;  // the budget was the reason
 };
 
-// Reads a regular file of at most `most_bytes`. Throws FileProblem. Large files are read by several threads.
+// Reads a regular file of at most `most_bytes`. Throws FileProblem, also for a large one that is mostly holes. Large
+// files are read by several threads.
 FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
 
-// As above, a file of text: one with holes, which takes no space on disk but would take memory, is refused unread.
+// As above, a file of text: a large one with any hole is refused unread.
 FileBytes read_text_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
 
 // What would keep `file` from being read (it is missing, a folder, a device, not readable); empty when nothing would.

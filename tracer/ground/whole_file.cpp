@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "tracer/ground/error.h"
 
@@ -15,10 +16,6 @@ namespace raywalk {
 namespace fs = std::filesystem;
 
 namespace {
-
-[[noreturn]] void fail(const fs::path& file, int error) {
-    throw WorkError("cannot write " + quoted_name(file.string()) + ": " + std::generic_category().message(error));
-}
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
@@ -35,40 +32,17 @@ bool is_special(const fs::path& file) {
     return fs::exists(file, ignored) && !fs::is_regular_file(file, ignored) && !fs::is_directory(file, ignored);
 }
 
-// An open file that is closed in the end.
-class Descriptor {
-  public:
-    explicit Descriptor(int number) : number_(number) {}
-    ~Descriptor() {
-        if (number_ >= 0) ::close(number_);
+// Writes all of `bytes`; `write_some(bytes)` returns how many it wrote, or -1 and errno. Returns 0, or the error.
+template <class Write>
+int write_all(std::string_view bytes, const Write& write_some) {
+    while (!bytes.empty()) {
+        const ssize_t count = write_some(bytes);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return errno;
+        bytes.remove_prefix(static_cast<std::size_t>(count));
     }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    [[nodiscard]] int number() const { return number_; }
-
-    // 0, or the error.
-    [[nodiscard]] int write(std::string_view bytes) const {
-        while (!bytes.empty()) {
-            const ssize_t count = ::write(number_, bytes.data(), bytes.size());
-            if (count < 0 && errno == EINTR) continue;
-            if (count < 0) return errno;
-            bytes.remove_prefix(static_cast<std::size_t>(count));
-        }
-        return 0;
-    }
-    [[nodiscard]] int flush_to_disk() const {
-        if (fsync(number_) == 0 || errno == EINVAL || errno == ENOTSUP) return 0;
-        return errno;
-    }
-    [[nodiscard]] int close() {
-        const int error = ::close(number_) == 0 ? 0 : errno;
-        number_ = -1;
-        return error;
-    }
-
-  private:
-    int number_;
-};
+    return 0;
+}
 
 // Tries names ".NAME-0.part", ... beside `file` until one is free; `make` returns 0 or -1 and errno.
 template <class Make>
@@ -82,65 +56,95 @@ fs::path free_name_beside(const fs::path& file, const Make& make) {
     }
 }
 
-// Gives the written file the name of `target`. Returns 0, or the error, and then there is no new name.
-int rename_to(const fs::path& name, const fs::path& target) {
-    if (rename(name.c_str(), target.c_str()) == 0) return 0;
-    const int error = errno;
-    unlink(name.c_str());
-    return error;
-}
-
-// Into a device or a pipe.
-void write_directly(const fs::path& file, const fs::path& target, std::string_view bytes) {
-    // Opening a pipe that nobody reads would wait for ever.
-    Descriptor descriptor(open(target.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
-    if (descriptor.number() < 0 && errno == ENXIO)
-        throw WorkError("cannot write " + quoted_name(file.string()) + ": nothing reads from it");
-    if (descriptor.number() < 0) fail(file, errno);
-    fcntl(descriptor.number(), F_SETFL, O_WRONLY);  // from here on a full pipe is waited for
-    if (const int error = descriptor.write(bytes)) fail(file, error);
-    if (const int error = descriptor.close()) fail(file, error);
-}
-
-// True when done, false where the file system has no files without a name.
-bool write_without_name(const fs::path& file, const fs::path& target, std::string_view bytes) {
-    const Descriptor descriptor(open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
-    if (descriptor.number() < 0) return false;
-    if (const int error = descriptor.write(bytes)) fail(file, error);
-    if (const int error = descriptor.flush_to_disk()) fail(file, error);
-    const std::string itself = "/proc/self/fd/" + std::to_string(descriptor.number());
-    // A file without a name can be given a free one only, hence the second step.
-    const fs::path name = free_name_beside(target, [&](const fs::path& free) {
-        return linkat(AT_FDCWD, itself.c_str(), AT_FDCWD, free.c_str(), AT_SYMLINK_FOLLOW);
-    });
-    if (name.empty()) return false;  // no /proc here
-    if (const int error = rename_to(name, target)) fail(file, error);
-    return true;
-}
-
-void write_with_name(const fs::path& file, const fs::path& target, std::string_view bytes) {
-    int number = -1;
-    const fs::path name = free_name_beside(target, [&](const fs::path& free) {
-        return number = open(free.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    });
-    if (name.empty()) fail(file, errno);
-    Descriptor descriptor(number);
-    int error = descriptor.write(bytes);
-    if (error == 0) error = descriptor.flush_to_disk();
-    if (const int close_error = descriptor.close(); error == 0) error = close_error;
-    if (error == 0)
-        error = rename_to(name, target);
-    else
-        unlink(name.c_str());
-    if (error != 0) fail(file, error);
+// A new file in the folder of `target`, without a name; -1 where there is no such thing.
+int open_without_name(const fs::path& target) {
+    // It gets its name by way of /proc.
+    if (access("/proc/self/fd", X_OK) != 0) return -1;
+    return open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
 }
 
 }  // namespace
 
-void write_whole(const fs::path& file, std::string_view bytes) {
-    const fs::path target = followed(file);
-    if (is_special(target)) return write_directly(file, target, bytes);
-    if (!write_without_name(file, target, bytes)) write_with_name(file, target, bytes);
+WholeFile::WholeFile(fs::path file) : file_(std::move(file)), target_(followed(file_)) {
+    if (is_special(target_)) return;
+    descriptor_ = open_without_name(target_);
+    if (descriptor_ >= 0) return;
+    part_ = free_name_beside(target_, [&](const fs::path& free) {
+        return descriptor_ = open(free.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    });
+    if (part_.empty()) fail(errno);
+}
+
+WholeFile::~WholeFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+    if (!part_.empty()) unlink(part_.c_str());
+}
+
+void WholeFile::fail(int error) const {
+    throw WorkError("cannot write " + quoted_name(file_.string()) + ": " + std::generic_category().message(error));
+}
+
+void WholeFile::write_at(std::uint64_t offset, std::string_view bytes) {
+    const int error = write_all(bytes, [&](std::string_view rest) {
+        const std::uint64_t done = bytes.size() - rest.size();
+        return pwrite(descriptor_, rest.data(), rest.size(), static_cast<off_t>(offset + done));
+    });
+    if (error != 0) fail(error);
+}
+
+void WholeFile::append(std::string_view bytes) {
+    if (descriptor_ < 0)
+        content_ += bytes;
+    else
+        write_at(size_, bytes);
+    size_ += bytes.size();
+}
+
+void WholeFile::overwrite(std::uint64_t offset, std::string_view bytes) {
+    if (descriptor_ < 0)
+        content_.replace(offset, bytes.size(), bytes);
+    else
+        write_at(offset, bytes);
+}
+
+void WholeFile::write_directly() {
+    // Opening a pipe that nobody reads would wait for ever.
+    descriptor_ = open(target_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    if (descriptor_ < 0 && errno == ENXIO)
+        throw WorkError("cannot write " + quoted_name(file_.string()) + ": nothing reads from it");
+    if (descriptor_ < 0) fail(errno);
+    fcntl(descriptor_, F_SETFL, O_WRONLY);  // from here on a full pipe is waited for
+    const int error =
+        write_all(content_, [&](std::string_view rest) { return ::write(descriptor_, rest.data(), rest.size()); });
+    if (error != 0) fail(error);
+    close_file();
+}
+
+void WholeFile::close_file() {
+    if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+}
+
+void WholeFile::finish(Durability durability) {
+    if (descriptor_ < 0) return write_directly();
+    if (durability == Durability::on_disk && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP)
+        fail(errno);
+    if (part_.empty()) {
+        // A file without a name can be given a free one only, hence the second step.
+        const std::string itself = "/proc/self/fd/" + std::to_string(descriptor_);
+        part_ = free_name_beside(target_, [&](const fs::path& free) {
+            return linkat(AT_FDCWD, itself.c_str(), AT_FDCWD, free.c_str(), AT_SYMLINK_FOLLOW);
+        });
+        if (part_.empty()) fail(errno);
+    }
+    close_file();
+    if (rename(part_.c_str(), target_.c_str()) != 0) fail(errno);
+    part_.clear();
+}
+
+void write_whole(const fs::path& file, std::string_view bytes, Durability durability) {
+    WholeFile whole(file);
+    whole.append(bytes);
+    whole.finish(durability);
 }
 
 std::string obstacle_to_writing(const fs::path& file) {

@@ -1,18 +1,53 @@
 // Files that appear whole or not at all.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace raywalk {
 
-// Writes a new file beside `file` and renames it to `file` when all of it is on the disk: whatever happens on the way,
-// `file` is the old one or the whole new one. The new file has no name until it is whole (where the file system can),
-// so that a killed program leaves nothing behind; only between the last two steps, naming and renaming, it leaves the
-// whole new file as .NAME-PID-0.part. A `file` that is a device or pipe (/dev/null) is written to directly.
-// Throws WorkError naming the file and the reason.
-void write_whole(const std::filesystem::path& file, std::string_view bytes);
+// When a file counts as written.
+enum class Durability {
+    on_disk,   // when its content is on the disk: not even a loss of power leaves less than the old file or the new one
+    in_system  // when the system has its content: the same, whatever happens to this program alone
+};
+
+// A file that is written piece by piece, and appears when it is whole: a new file beside `file` is renamed to `file`,
+// so that whatever happens on the way, `file` is the old one or the whole new one. The new file has no name until it
+// is whole (where the file system can), so that a killed program leaves nothing behind; only between the last two
+// steps, naming and renaming, it leaves the whole new file as .NAME-PID-0.part. A `file` that is a device or pipe
+// (/dev/null) is written to directly, in the end. Every function throws WorkError naming the file and the reason.
+class WholeFile {
+  public:
+    explicit WholeFile(std::filesystem::path file);
+    ~WholeFile();  // a file that was not finished leaves nothing
+    WholeFile(const WholeFile&) = delete;
+    WholeFile& operator=(const WholeFile&) = delete;
+
+    void append(std::string_view bytes);
+    [[nodiscard]] std::uint64_t size() const { return size_; }  // bytes appended so far
+    // Replaces bytes that were appended before.
+    void overwrite(std::uint64_t offset, std::string_view bytes);
+    void finish(Durability durability = Durability::on_disk);
+
+  private:
+    [[noreturn]] void fail(int error) const;
+    void write_at(std::uint64_t offset, std::string_view bytes);
+    void close_file();
+    void write_directly();
+
+    std::filesystem::path file_, target_;  // the name given, and where links lead from there
+    std::filesystem::path part_;           // name of the new file; empty: none yet
+    int descriptor_ = -1;                  // of the new file; -1: a device or pipe
+    std::string content_;                  // for a device or pipe
+    std::uint64_t size_ = 0;
+};
+
+// The same in one step.
+void write_whole(const std::filesystem::path& file, std::string_view bytes,
+                 Durability durability = Durability::on_disk);
 
 // Why a file of this name could not be made ("its folder 'x' does not exist"); empty when it seems that it could.
 std::string obstacle_to_writing(const std::filesystem::path& file);

@@ -41,7 +41,9 @@ inline float film_scale(float exposure, std::uint32_t samples) {
     return samples == 0 ? 0.0f : exposure / static_cast<float>(samples);
 }
 
-// Mean radiance, rows from the top; tiles without a sample are black.
+// Mean radiance, rows from the top; tiles without a sample are black. The rows are read from the film as they are asked
+// for, and it has to stay.
+FloatRows radiance_rows(const Film& film);
 FloatImage mean_radiance(const Film& film);
 // Factor that brings the largest channel of the mean to 1 where it is over 1, else 1 (spec 4.8 `normalize`).
 float normalizing_exposure(const Film& film);
