@@ -53,7 +53,7 @@ struct KdTree {
 
 // A child: an inner node's index, or a leaf: bit 31 leaf, bit 30 spheres, bits 27-29 blocks - 1, bits 0-26 first block.
 struct BvhReference {
-    std::uint32_t bits = 0;
+    std::uint32_t bits;  // without a first value, for traversal has thousands of them on its stack
     [[nodiscard]] bool leaf() const { return (bits >> 31) != 0; }
     [[nodiscard]] bool spheres() const { return ((bits >> 30) & 1) != 0; }
     [[nodiscard]] std::uint32_t blocks() const { return ((bits >> 27) & 7) + 1; }
