@@ -88,8 +88,8 @@ class HitBlocks {
 };
 
 // Asks for the memory of blocks soon after block b. Who goes through blocks in order and does without waits for memory
-// longer than a beam takes to be traced.
-inline void fetch_ahead(const RayBlocks& rays, HitBlocks& hits, std::size_t b) {
+// longer than a beam takes to be traced. (Inline at once: to GCC, calls of a function that only prefetches do nothing.)
+[[gnu::always_inline]] inline void fetch_ahead(const RayBlocks& rays, HitBlocks& hits, std::size_t b) {
     constexpr std::size_t cache_line = 64, blocks_ahead = 2;
     if (b + blocks_ahead >= rays.blocks().size()) return;
     const auto* some = reinterpret_cast<const char*>(&rays.blocks()[b + blocks_ahead]);
