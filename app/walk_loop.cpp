@@ -47,7 +47,8 @@ struct Walk {
     bool visible = false, present_again = false, title_stale = false;
     double next_present = 0, next_title = 0, last_change = -standing_after;
     double last_shown = 0;
-    bool shown_moving = false;  // the camera moved when the last frame was shown
+    bool moving = false;        // keys move the camera
+    bool shown_moving = false;  // they did when the last frame was shown
     std::uint64_t newest_id = 1;
     struct Change {
         std::uint64_t id;
@@ -83,7 +84,7 @@ void Walk::follow_input(double now) {
         window.exposure_presses = 0;
     }
     view.camera = window.input.advance(view.camera, now);
-    const bool moving = window.input.moving() && now - last_change < standing_after;
+    moving = window.input.moving() && now - last_change < standing_after;
     const std::uint64_t id = render.show(view, moving);
     if (id == newest_id) return;
     newest_id = id;
@@ -104,8 +105,8 @@ void Walk::show_frame(double now) {
     if (outcome == Presenter::Outcome::hidden) return;
     if (record.present_seconds.empty()) presenter.warm_up();
     record.present_seconds.push_back(shown - now);
-    const bool moving = now - last_change < standing_after;
-    if (moving && shown_moving) record.frame_intervals.push_back(shown - last_shown);
+    if (moving && shown_moving && unanswered)
+        record.frame_intervals.push_back(shown - std::max(last_shown, unanswered->seconds));
     shown_moving = moving;
     last_shown = shown;
     title_stale = true;

@@ -20,7 +20,8 @@ struct WalkSetup {
 struct WalkRecord {
     std::vector<double> answer_seconds;   // from a change of the view to the frame on the screen that shows it
     std::vector<double> present_seconds;  // what the window's thread took for each frame
-    std::vector<double> frame_intervals;  // seconds between frames on the screen while the camera moved
+    std::vector<double> frame_intervals;  // seconds for which a moving camera's screen stood: since the frame before,
+                                          // or the change of the view where that came later
     Camera camera;                        // the last one
     bool interrupted = false;
 };
