@@ -22,12 +22,14 @@ class InOrder {
     void append(int number, std::string_view bytes, std::exception_ptr problem) {
         std::unique_lock lock(mutex_);
         turn_.wait(lock, [&] { return next_ == number; });
-        if (!problem_ && !problem) try {
+        if (!problem_ && !problem) {
+            try {
                 begins_.push_back(file_->size());
                 file_->append(bytes);
             } catch (...) {
                 problem = std::current_exception();
             }
+        }
         if (!problem_) problem_ = problem;
         ++next_;
         turn_.notify_all();
@@ -53,10 +55,10 @@ class InOrder {
 std::vector<std::uint64_t> append_bands(WholeFile& file, int height, int rows, const EncodeBand& encode) {
     const int bands = (height + rows - 1) / rows;
     InOrder in_order(file);
+    // One band after the other, so that whoever has the next turn is at work already.
 #pragma omp parallel
     {
         std::string bytes;  // its memory serves all bands of a thread
-                            // One after the other, so that whoever has the next turn is at work already.
 #pragma omp for schedule(monotonic : dynamic, 1)
         for (int band = 0; band < bands; ++band) {
             std::exception_ptr problem;  // none may leave a parallel loop
@@ -70,6 +72,13 @@ std::vector<std::uint64_t> append_bands(WholeFile& file, int height, int rows, c
         }
     }
     return in_order.begins();
+}
+
+std::span<const float> rows_of(const FloatRows& picture, int begin, int end) {
+    thread_local std::vector<float> rgb;
+    rgb.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(picture.width) * 3);
+    picture.read(begin, end, rgb.data());
+    return rgb;
 }
 
 std::string zlib_compressed(std::string_view data, int level) {

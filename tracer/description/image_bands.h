@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tracer/description/image.h"
 #include "tracer/ground/whole_file.h"
 
 namespace raywalk {
@@ -18,6 +20,9 @@ using EncodeBand = std::function<void(int begin, int end, std::string& bytes)>;
 // Appends the bands of `rows` rows each (the last may have fewer) to the file, in order. Returns where each begins in
 // the file, and at last where the last one ends.
 std::vector<std::uint64_t> append_bands(WholeFile& file, int height, int rows, const EncodeBand& encode);
+
+// Rows [begin, end) of a picture, in memory that the calling thread's next call uses again.
+std::span<const float> rows_of(const FloatRows& picture, int begin, int end);
 
 // `data` as a zlib stream; level 1 (fast) to 9 (small).
 std::string zlib_compressed(std::string_view data, int level);

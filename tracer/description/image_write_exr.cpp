@@ -80,9 +80,7 @@ void write_exr(WholeFile& file, const FloatRows& picture, Saving saving) {
 
     const auto width = static_cast<std::size_t>(picture.width);
     const auto begins = append_bands(file, picture.height, zip_rows, [&](int begin, int end, std::string& bytes) {
-        thread_local std::vector<float> rgb;
-        rgb.resize(static_cast<std::size_t>(end - begin) * width * 3);
-        picture.read(begin, end, rgb.data());
+        const std::span<const float> rgb = rows_of(picture, begin, end);
         for (int y = begin; y < end; y += block_rows) {
             const int rows = std::min(block_rows, end - y);
             std::string block =

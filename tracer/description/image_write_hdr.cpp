@@ -66,11 +66,9 @@ void write_hdr(WholeFile& file, const FloatRows& picture) {
     const auto width = static_cast<std::size_t>(picture.width);
     const bool runs = width >= 8 && width <= 0x7FFF;  // readers take other rows for pixels
     append_bands(file, picture.height, 64, [&](int begin, int end, std::string& bytes) {
-        thread_local std::vector<float> rgb;
+        const std::span<const float> rgb = rows_of(picture, begin, end);
         thread_local std::vector<unsigned char> row;
-        rgb.resize(static_cast<std::size_t>(end - begin) * width * 3);
         row.resize(width * 4);
-        picture.read(begin, end, rgb.data());
         for (const float* pixels = rgb.data(); pixels != rgb.data() + rgb.size(); pixels += width * 3) {
             // With runs the row holds all reds, then all greens, ...; without, pixel by pixel.
             const std::size_t step = runs ? 1 : 4, stride = runs ? width : 1;

@@ -11,11 +11,8 @@ void write_pfm(WholeFile& file, const FloatRows& picture) {
     const std::size_t row_bytes = static_cast<std::size_t>(picture.width) * 3 * sizeof(float);
     const int height = picture.height;
     append_bands(file, height, 64, [&](int begin, int end, std::string& bytes) {  // from the bottom row
-        const auto rows = static_cast<std::size_t>(end - begin);
-        thread_local std::vector<float> rgb;
-        rgb.resize(rows * row_bytes / sizeof(float));
-        picture.read(height - end, height - begin, rgb.data());
-        for (std::size_t row = rows; row-- > 0;)
+        const std::span<const float> rgb = rows_of(picture, height - end, height - begin);
+        for (auto row = static_cast<std::size_t>(end - begin); row-- > 0;)
             bytes.append(reinterpret_cast<const char*>(rgb.data()) + row * row_bytes, row_bytes);
     });
 }

@@ -66,9 +66,7 @@ void write_tiff(WholeFile& file, const FloatRows& picture, Saving saving) {
     file.append(std::string_view("II*\0\0\0\0\0", 8));  // and where the directory is, which is known in the end
 
     const auto begins = append_bands(file, picture.height, strip_rows, [&](int begin, int end, std::string& bytes) {
-        thread_local std::vector<float> rgb;
-        rgb.resize(static_cast<std::size_t>(end - begin) * width * 3);
-        picture.read(begin, end, rgb.data());
+        const std::span<const float> rgb = rows_of(picture, begin, end);
         if (!compressed) {
             bytes.append(reinterpret_cast<const char*>(rgb.data()), rgb.size() * sizeof(float));
             return;

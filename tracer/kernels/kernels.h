@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/kernels/ray_arrays.h"
+#include "tracer/kernels/ray_blocks.h"
 #include "tracer/rendering/camera.h"
 #include "tracer/rendering/film.h"
 
