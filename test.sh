@@ -38,16 +38,23 @@ build_with_tests() { configure "$1" RAYWALK_TESTS=ON && build "$1"; }
 
 sources() { git -C "$root" ls-files -z -- '*.h' '*.cpp' '*.inl'; }
 check_format() { (cd "$root" && sources | xargs -0 -r clang-format --dry-run --Werror); }
-# Each source that some preset builds, the first time it is met. The benchmark and the fuzzers are only configured: to
-# read a source it is enough to know how it would be compiled.
+# Each source once. To read them it is enough to know how they would be compiled, and to have the shaders' headers.
 lint() {
-    configure bench && configure fuzz || return
+    configure lint && configure fuzz && cmake --build "$root/build/lint" --target shader_headers || return
     local preset
-    for preset in release bench fuzz; do
+    for preset in lint fuzz; do
         grep -o '"file": "[^"]*"' "$root/build/$preset/compile_commands.json" | cut -d'"' -f4 | sed "s|^|$preset |"
     done | sort -u -k 2 -s |
         xargs -d '\n' -r -n 1 -P "$jobs" bash -c \
-            'clang-tidy -p "$0/build/${1%% *}" --quiet --warnings-as-errors="*" "${1#* }"' "$root"
+            'clang-tidy -p "$0/build/${1%% *}" --quiet --warnings-as-errors="*" "${1#* }"' "$root" \
+            2> >(grep -v 'warnings generated' >&2)
+}
+
+outcome_of() {  # outcome_of PROCESS LOG: waits for what was started in the background, shows what it said
+    local outcome=0
+    wait "$1" || outcome=$?
+    cat "$2"
+    return "$outcome"
 }
 
 # What is built runs at once, to make the meshes and textures of the scenes.
@@ -71,8 +78,12 @@ else
     stage "coverage" "$root/tests/coverage.sh" "$root/build/asan" 95
     stage "build for the thread sanitizer" build_for_tsan
     stage "suite under it" "$root/tests/sanitized.sh" "$root/build/tsan"
-    stage "deliberate faults" "$root/tests/mutations/run.sh"
-    stage "fuzzing, a minute for each target" "$root/tests/fuzz/run.sh" 60
+    # Faults are planted and built one by one, which keeps one core busy; the fuzzers share the others' time.
+    faults_log=$root/build/faults.log
+    "$root/tests/mutations/run.sh" </dev/null >"$faults_log" 2>&1 &
+    faults=$!
+    stage "fuzzing, a minute for each target, while faults are planted" "$root/tests/fuzz/run.sh" 60
+    stage "deliberate faults, the rest of them" outcome_of "$faults" "$faults_log"
     stage "lint" lint
 fi
 

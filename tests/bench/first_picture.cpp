@@ -1,16 +1,15 @@
 #include "tests/bench/first_picture.h"
 
 #include <fcntl.h>
-#include <omp.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <ctime>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
-
-#include "tests/bench/frames.h"
 
 extern char** environ;
 
@@ -72,36 +71,31 @@ void finish(const Child& child) {
 
 FirstPictureRow measure_first_picture(const std::filesystem::path& program, const std::filesystem::path& scene,
                                       int rounds, const std::filesystem::path& folder) {
-    const std::filesystem::path picture = folder / "first.pfm";
+    const std::filesystem::path picture = folder / "first.pfm", statistics = folder / "first.json";
     FirstPictureRow row;
     row.name = scene.stem().string();
-    std::vector<double> wall, cpu;
+    std::vector<double> wall, cpu, parse, build;
     for (int round = 0; round <= rounds; ++round) {
         const double begin = seconds(Clock::wall);
-        const Child child =
-            start({program, scene, "-render", picture, "--size", "1280x720", "--spp", "1", "--threads", "1"});
+        const Child child = start({program, scene, "-render", picture, "--size", "1280x720", "--spp", "1", "--threads",
+                                   "1", "--stats", statistics});
         const bool traced = wait_until_traced(child);
         const double used = cpu_seconds_of(child.process), passed = seconds(Clock::wall) - begin;
         finish(child);
         if (!traced) throw std::runtime_error(program.string() + " made no picture of " + scene.string());
         if (round == 0) continue;  // files are in memory from now on
+        const nlohmann::json parts = nlohmann::json::parse(std::ifstream(statistics)).at("seconds");
         wall.push_back(passed);
         cpu.push_back(used);
+        parse.push_back(parts.at("read_scene").get<double>() + parts.at("read_meshes").get<double>());
+        build.push_back(parts.at("build").get<double>());
     }
     std::filesystem::remove(picture);
+    std::filesystem::remove(statistics);
     row.wall = spread_of(wall);
     row.cpu = spread_of(cpu);
-
-    const int threads = omp_get_max_threads();
-    omp_set_num_threads(1);
-    const FrameScene frame = read_frame_scene(scene);
-    std::vector<double> compile_times;
-    constexpr int compilations = 3;
-    compile_times.reserve(compilations);
-    for (int i = 0; i < compilations; ++i)
-        compile_times.push_back(timed(Clock::process_cpu, [&] { compile_for(frame, CompileOptions{}.accelerator); })());
-    omp_set_num_threads(threads);
-    row.parse_and_build = spread_of(compile_times).median;
+    row.parse = spread_of(parse).median;
+    row.build = spread_of(build).median;
     return row;
 }
 

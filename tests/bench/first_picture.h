@@ -11,8 +11,9 @@ namespace raywalk::bench {
 
 struct FirstPictureRow {
     std::string name;
-    Spread wall, cpu;            // seconds from exec until the last tile is traced (nothing written yet)
-    double parse_and_build = 0;  // CPU seconds of reading the scene's meshes and building its tree, in this process
+    Spread wall, cpu;  // seconds from exec until the last tile is traced (nothing written yet)
+    // Of that, seconds for reading the scene and its meshes, and for building the tree (medians; one thread).
+    double parse = 0, build = 0;
 };
 
 // Starts `program` with `scene` a few times, one thread, and looks at its clocks when it says "100 %".

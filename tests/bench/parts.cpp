@@ -321,22 +321,23 @@ Findings measure_first_pictures(const Setting& setting) {
     std::vector<fs::path> scenes = {setting.root / "scenes/cornell_box.scene"};
     for (const fs::path& mesh : mesh_files(setting)) scenes.push_back(write_scene_of(mesh, setting.scratch));
     std::vector<std::vector<std::string>> cells = {
-        {"scene", "exec to picture, CPU ms", "wall ms", "parse and build, CPU ms"}};
+        {"scene", "exec to picture, CPU ms", "wall ms", "of it: parse", "build"}};
     Goal box{"first picture of the Cornell box, CPU ms", 100, 50, true, {}};
     Goal meshes{"first picture of a mesh / parse and build", 2, 1.5, true, {}};
     for (const fs::path& scene : scenes) {
         const FirstPictureRow row =
             measure_first_picture(setting.program, scene, setting.quick ? 3 : 7, setting.scratch);
-        cells.push_back(
-            {row.name, milliseconds(row.cpu.median), milliseconds(row.wall.median), milliseconds(row.parse_and_build)});
+        cells.push_back({row.name, milliseconds(row.cpu.median), milliseconds(row.wall.median), milliseconds(row.parse),
+                         milliseconds(row.build)});
         findings.json.push_back({{"scene", row.name},
                                  {"cpu_seconds", row.cpu.median},
                                  {"wall_seconds", row.wall.median},
-                                 {"parse_and_build_seconds", row.parse_and_build}});
+                                 {"parse_seconds", row.parse},
+                                 {"build_seconds", row.build}});
         if (&scene == scenes.data())
             box.measured.emplace_back(row.name, 1e3 * row.cpu.median);
         else
-            meshes.measured.emplace_back(row.name, row.cpu.median / row.parse_and_build);
+            meshes.measured.emplace_back(row.name, row.cpu.median / (row.parse + row.build));
     }
     findings.markdown =
         "From starting the program to the last tile of a 1280 x 720 picture, one thread.\n\n" + table(cells);

@@ -13,6 +13,8 @@ namespace {
 
 // The unit vector along v, or zero where v has no direction.
 glm::dvec3 direction_of(const glm::dvec3& v) {
+    const double squared = glm::dot(v, v);
+    if (squared > 1e-200 && squared < 1e200) return v / std::sqrt(squared);
     // Scaled first, so that the square of a tiny or huge component neither vanishes nor overflows.
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     if (!(largest > 0) || std::isinf(largest)) return glm::dvec3(0);
