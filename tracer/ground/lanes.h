@@ -282,6 +282,48 @@ HWY_INLINE float reduce_max(Real a) {
     for (int i = 1; i < registers; ++i) r = hn::Max(r, a.v[i]);
     return hn::GetLane(hn::MaxOfLanes(RealTag(), r));
 }
+#if HWY_TARGET != HWY_SCALAR
+// Halves combined until four lanes are left.
+template <class Tag, class Combine>
+HWY_INLINE void store_folded(Tag tag, hn::Vec<Tag> a, float (&four)[4], Combine combine) {
+    if constexpr (hn::MaxLanes(tag) > 4) {
+        const hn::Half<Tag> half;
+        store_folded(half, combine(hn::LowerHalf(half, a), hn::UpperHalf(half, a)), four, combine);
+    } else {
+        hn::StoreU(a, tag, four);
+    }
+}
+#endif
+// Of four values at once, which takes half the work of one after the other; four[i] is of values[i].
+template <class Combine>
+HWY_INLINE void reduce_four(const Real (&values)[4], float (&four)[4], Combine combine) {
+    RealRegister r[4];
+    for (int n = 0; n < 4; ++n) {
+        r[n] = values[n].v[0];
+        for (int i = 1; i < registers; ++i) r[n] = combine(r[n], values[n].v[i]);
+    }
+#if HWY_TARGET == HWY_SCALAR
+    for (int n = 0; n < 4; ++n) four[n] = hn::GetLane(r[n]);
+#else
+    // In blocks of four lanes: 0 1 0 1 and 2 3 2 3, then 0 1 2 3; at last block by block.
+    const RealTag tag;
+    const hn::Repartition<double, RealTag> pairs;
+    const auto x =
+        hn::BitCast(pairs, combine(hn::InterleaveLower(tag, r[0], r[1]), hn::InterleaveUpper(tag, r[0], r[1])));
+    const auto y =
+        hn::BitCast(pairs, combine(hn::InterleaveLower(tag, r[2], r[3]), hn::InterleaveUpper(tag, r[2], r[3])));
+    store_folded(
+        tag,
+        combine(hn::BitCast(tag, hn::InterleaveLower(pairs, x, y)), hn::BitCast(tag, hn::InterleaveUpper(pairs, x, y))),
+        four, combine);
+#endif
+}
+HWY_INLINE void reduce_min(const Real (&values)[4], float (&four)[4]) {
+    reduce_four(values, four, [](auto a, auto b) HWY_ATTR { return hn::Min(a, b); });
+}
+HWY_INLINE void reduce_max(const Real (&values)[4], float (&four)[4]) {
+    reduce_four(values, four, [](auto a, auto b) HWY_ATTR { return hn::Max(a, b); });
+}
 HWY_INLINE float lane(Real a, int i) {
     HWY_ALIGN float values[lanes];
     store(a, values);

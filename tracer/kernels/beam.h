@@ -24,17 +24,18 @@ namespace HWY_NAMESPACE {
 inline constexpr int beam_groups = beam_rays / lanes;
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// Sixteen rays (a 4x4 block of pixels): their slopes, and, once measured, the slopes' ranges as middle and half, a hair
-// wider, and what the tests of shapes need.
-struct alignas(64) BeamGroup {
-    Real u, v;
-    Real growth, inverse_squared_length;  // as in RayStream
-    float middle_u, half_u, middle_v, half_v;
-    float stretch_u, stretch_v;  // 1 / cosine of the steepest slope
+// Ranges of the slopes of each group of sixteen rays (a 4x4 block of pixels), a hair wider: middle - half to middle +
+// half.
+struct GroupRanges {
+    float middle[beam_groups], half[beam_groups];
+    float stretch[beam_groups];  // 1 / cosine of the steepest slope, for spheres
 };
 
 struct Beam {
-    BeamGroup group[beam_groups];
+    Real u[beam_groups], v[beam_groups];  // slopes
+    // Once the beam is ready for triangles or spheres, what the tests of either need; the last two as in RayStream.
+    GroupRanges range_u, range_v;
+    Real growth[beam_groups], inverse_squared_length[beam_groups];
     const BeamRays* rays;
     BeamHits* hits;              // nearest so far, of active rays; null for any-hit beams
     int k, a, b;                 // axes: depth, U, V
@@ -43,7 +44,7 @@ struct Beam {
     float u0, u1, v0, v1;        // ranges of the slopes, a hair wider
     float depth_min, depth_max;  // where a hit would still count, along k
     std::uint64_t active;        // any-hit rays that hit are not active any more
-    bool groups_measured;
+    bool ready_for_triangles, ready_for_spheres;
     int tests_left;  // of a triangle against a group; below zero the traversal gives up
 };
 
@@ -76,8 +77,8 @@ HWY_INLINE std::uint64_t project_beam(const BeamRays& rays, std::uint64_t active
         const Real u = load(rays.direction[beam.a] + at) * scale, v = load(rays.direction[beam.b] + at) * scale;
         const Mask goes_along =
             mask_of_bits(lanes_of(active, g)) & (scale > Real(0.0f)) & (max(abs(u), abs(v)) <= Real(steepest_slope));
-        beam.group[g].u = select(goes_along, u, first_u);
-        beam.group[g].v = select(goes_along, v, first_v);
+        beam.u[g] = select(goes_along, u, first_u);
+        beam.v[g] = select(goes_along, v, first_v);
         along |= rays_of(bits(goes_along), g);
     }
     return along;
@@ -85,35 +86,52 @@ HWY_INLINE std::uint64_t project_beam(const BeamRays& rays, std::uint64_t active
 
 // The slopes' ranges over all groups.
 HWY_INLINE void measure_beam(Beam& beam) {
-    Real u0 = beam.group[0].u, u1 = u0, v0 = beam.group[0].v, v1 = v0;
+    Real u0 = beam.u[0], u1 = u0, v0 = beam.v[0], v1 = v0;
     for (int g = 1; g < beam_groups; ++g) {
-        u0 = min(u0, beam.group[g].u), u1 = max(u1, beam.group[g].u);
-        v0 = min(v0, beam.group[g].v), v1 = max(v1, beam.group[g].v);
+        u0 = min(u0, beam.u[g]), u1 = max(u1, beam.u[g]);
+        v0 = min(v0, beam.v[g]), v1 = max(v1, beam.v[g]);
     }
-    const float margin = 1e-6f;
-    beam.u0 = reduce_min(u0), beam.u1 = reduce_max(u1), beam.v0 = reduce_min(v0), beam.v1 = reduce_max(v1);
-    beam.u0 -= margin * std::fabs(beam.u0), beam.u1 += margin * std::fabs(beam.u1);
-    beam.v0 -= margin * std::fabs(beam.v0), beam.v1 += margin * std::fabs(beam.v1);
+    float least[4];
+    reduce_min({u0, -u1, v0, -v1}, least);
+    const auto wider = [](float low) { return low - 1e-6f * std::fabs(low); };
+    beam.u0 = wider(least[0]), beam.u1 = -wider(least[1]);
+    beam.v0 = wider(least[2]), beam.v1 = -wider(least[3]);
 }
 
 // The same group by group, once the beam has met something that may be theirs.
-inline void measure_groups(Beam& beam) {
-    const auto range = [](Real slope, float& middle, float& half, float& stretch) HWY_ATTR {
-        const float low = reduce_min(slope), high = reduce_max(slope);
-        middle = 0.5f * (low + high);
-        half = 0.5f * (high - low) + 1e-6f * std::fabs(middle);
-        const float steepest = std::fabs(middle) + half;
-        stretch = std::sqrt(1 + steepest * steepest);
-    };
+HWY_INLINE void measure_groups(const Real (&slopes)[beam_groups], GroupRanges& range) {
+    float low[beam_groups], high[beam_groups];
+    reduce_min(slopes, low);
+    reduce_max(slopes, high);
     for (int g = 0; g < beam_groups; ++g) {
-        BeamGroup& group = beam.group[g];
-        range(group.u, group.middle_u, group.half_u, group.stretch_u);
-        range(group.v, group.middle_v, group.half_v, group.stretch_v);
-        const Vec3 direction = directions_of(*beam.rays, g * lanes);
-        group.growth = growth_of(direction);
-        group.inverse_squared_length = Real(1.0f) / dot(direction, direction);
+        range.middle[g] = 0.5f * (low[g] + high[g]);
+        range.half[g] = 0.5f * (high[g] - low[g]) + 1e-6f * std::fabs(range.middle[g]);
     }
-    beam.groups_measured = true;
+}
+HWY_INLINE void measure_groups(Beam& beam) {
+    measure_groups(beam.u, beam.range_u);
+    measure_groups(beam.v, beam.range_v);
+}
+
+inline void prepare_for_triangles(Beam& beam) {
+    if (!beam.ready_for_spheres) measure_groups(beam);
+    for (int g = 0; g < beam_groups; ++g) beam.growth[g] = growth_of(directions_of(*beam.rays, g * lanes));
+    beam.ready_for_triangles = true;
+}
+
+inline void prepare_for_spheres(Beam& beam) {
+    if (!beam.ready_for_triangles) measure_groups(beam);
+    for (GroupRanges* range : {&beam.range_u, &beam.range_v}) {
+        for (int g = 0; g < beam_groups; ++g) {
+            const float steepest = std::fabs(range->middle[g]) + range->half[g];
+            range->stretch[g] = std::sqrt(1 + steepest * steepest);
+        }
+    }
+    for (int g = 0; g < beam_groups; ++g) {
+        const Vec3 direction = directions_of(*beam.rays, g * lanes);
+        beam.inverse_squared_length[g] = Real(1.0f) / dot(direction, direction);
+    }
+    beam.ready_for_spheres = true;
 }
 
 // The rays with the smaller slope along the beam's wider side.
@@ -121,8 +139,7 @@ HWY_INLINE std::uint64_t lower_half(const Beam& beam) {
     const bool by_u = beam.u1 - beam.u0 >= beam.v1 - beam.v0;
     const Real middle(by_u ? 0.5f * (beam.u0 + beam.u1) : 0.5f * (beam.v0 + beam.v1));
     std::uint64_t lower = 0;
-    for (int g = 0; g < beam_groups; ++g)
-        lower |= rays_of(bits((by_u ? beam.group[g].u : beam.group[g].v) < middle), g);
+    for (int g = 0; g < beam_groups; ++g) lower |= rays_of(bits((by_u ? beam.u[g] : beam.v[g]) < middle), g);
     return lower & beam.active;
 }
 
@@ -141,7 +158,7 @@ HWY_INLINE void shorten_beam(Beam& beam) {
 HWY_INLINE void start_beam(float padding, BeamHits* hits, Beam& beam) {
     beam.padding = padding;
     beam.hits = hits;
-    beam.groups_measured = false;
+    beam.ready_for_triangles = beam.ready_for_spheres = false;
     Real depth_min(infinity);
     for (int g = 0; g < beam_groups; ++g) {
         const int at = g * lanes;

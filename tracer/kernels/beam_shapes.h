@@ -99,13 +99,13 @@ HWY_INLINE TriangleEdges triangle_edges(const BeamTriangles& triangles, const Be
     }
     return e;
 }
-HWY_INLINE Mask touches_group(const BeamGroup& group, const TriangleEdges& e) {
+HWY_INLINE Mask touches_group(const Beam& beam, int g, const TriangleEdges& e) {
+    const Real middle_u(beam.range_u.middle[g]), middle_v(beam.range_v.middle[g]);
+    const Real half_u(beam.range_u.half[g]), half_v(beam.range_v.half[g]);
     Real least(infinity);
     for (int i = 0; i < 3; ++i) {
-        const Real middle =
-            mul_add(e.edge[i].x, Real(group.middle_u), mul_add(e.edge[i].y, Real(group.middle_v), e.edge[i].z));
-        const Real most =
-            mul_add(e.steepness_u[i], Real(group.half_u), mul_add(e.steepness_v[i], Real(group.half_v), middle));
+        const Real middle = mul_add(e.edge[i].x, middle_u, mul_add(e.edge[i].y, middle_v, e.edge[i].z));
+        const Real most = mul_add(e.steepness_u[i], half_u, mul_add(e.steepness_v[i], half_v, middle));
         least = min(most, least);
     }
     return least >= Real(0.0f);
@@ -120,7 +120,7 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, const float* origin, 
                 (load(block.corner[i][beam.k]) - Real(origin[beam.k])) * Real(beam.sign)};
     const std::uint32_t kept = bits(touches_beam(beam, p));
     if (kept == 0) return;
-    if (!beam.groups_measured) measure_groups(beam);
+    if (!beam.ready_for_triangles) prepare_for_triangles(beam);
 
     const TriangleForms forms = triangle_forms(block, splat3(origin));
     BeamTriangles triangles;
@@ -131,27 +131,27 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, const float* origin, 
     store(forms.spread, triangles.spread);
     const TriangleEdges edges = triangle_edges(triangles, beam);
     Pairs pairs = 0;
-    for (int g = 0; g < beam_groups; ++g) pairs |= rays_of(kept & bits(touches_group(beam.group[g], edges)), g);
+    for (int g = 0; g < beam_groups; ++g) pairs |= rays_of(kept & bits(touches_group(beam, g, edges)), g);
 
     beam.tests_left -= std::popcount(pairs);
     bool met = false;
     const std::uint64_t active = beam.active;
     for (; pairs != 0; pairs &= pairs - 1) {
         const int pair = std::countr_zero(pairs), group = pair / lanes, l = pair % lanes, at = group * lanes;
-        const TriangleLanes r = meet_triangles(triangles.one(l), directions_of(*beam.rays, at),
-                                               beam.group[group].growth, load(beam.rays->t_min + at));
+        const TriangleLanes r = meet_triangles(triangles.one(l), directions_of(*beam.rays, at), beam.growth[group],
+                                               load(beam.rays->t_min + at));
         met |= take_hits<any_hit>(r.hit, r.t, r.u, r.v, block.id[l], group, beam);
     }
     if (met || beam.active != active) shorten_beam(beam);
 }
 
 // A sphere touches a group of rays unless it lies wholly beyond one of the planes through the group's steepest slopes.
-HWY_INLINE Mask touches_group(const BeamGroup& group, Vec3 center, Real radius) {
-    const auto beyond = [&](Real x, float middle, float half) HWY_ATTR {
-        return abs(neg_mul_add(Real(middle), center.z, x)) - Real(half) * abs(center.z);
+HWY_INLINE Mask touches_group(const Beam& beam, int g, Vec3 center, Real radius) {
+    const auto within = [&](Real x, const GroupRanges& range) HWY_ATTR {
+        const Real beyond = abs(neg_mul_add(Real(range.middle[g]), center.z, x)) - Real(range.half[g]) * abs(center.z);
+        return beyond <= radius * Real(range.stretch[g]);
     };
-    return (beyond(center.x, group.middle_u, group.half_u) <= radius * Real(group.stretch_u)) &
-           (beyond(center.y, group.middle_v, group.half_v) <= radius * Real(group.stretch_v));
+    return within(center.x, beam.range_u) & within(center.y, beam.range_v);
 }
 
 template <bool any_hit>
@@ -164,10 +164,10 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std:
     const std::uint32_t deep_enough =
         bits((turned.z + grown >= Real(beam.depth_min)) & (turned.z - grown <= Real(beam.depth_max)));
     if (deep_enough == 0) return;
-    if (!beam.groups_measured) measure_groups(beam);
+    if (!beam.ready_for_spheres) prepare_for_spheres(beam);
     Pairs pairs = 0;
     for (int g = 0; g < beam_groups; ++g)
-        pairs |= rays_of(deep_enough & bits(touches_group(beam.group[g], turned, grown)), g);
+        pairs |= rays_of(deep_enough & bits(touches_group(beam, g, turned, grown)), g);
 
     bool met = false;
     const std::uint64_t active = beam.active;
@@ -175,7 +175,7 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std:
         const int pair = std::countr_zero(pairs), group = pair / lanes, l = pair % lanes, at = group * lanes;
         const Vec3 own = {Real(centers[0][l]), Real(centers[1][l]), Real(centers[2][l])};
         const SphereLanes r = meet_spheres(own, Real(block.radius[l]), directions_of(*beam.rays, at),
-                                           beam.group[group].inverse_squared_length, load(beam.rays->t_min + at));
+                                           beam.inverse_squared_length[group], load(beam.rays->t_min + at));
         met |= take_hits<any_hit>(r.hit, r.t, Real(0.0f), Real(0.0f), first_id + block.id[l], group, beam);
     }
     if (met || beam.active != active) shorten_beam(beam);

@@ -17,18 +17,30 @@ HWY_BEFORE_NAMESPACE();
 namespace raywalk {
 namespace HWY_NAMESPACE {
 
-// Which children the ray enters before t_max, and where.
-HWY_INLINE Mask enter_children(const BvhNode& node, const SingleRay& ray, Real t_max, Real& entry) {
+// The sides of a node's sixteen child boxes that rays of one octant meet first and last.
+struct ChildSides {
+    Real near_side[3], far_side[3];
+};
+HWY_INLINE ChildSides child_sides(const BvhNode& node, const RayStream& rays, int i) {
     const float* bounds = &node.lower[0][0];  // lower and upper lie side by side
     static_assert(offsetof(BvhNode, upper) == sizeof(float) * 3 * block_width);
+    ChildSides sides;
+    for (int a = 0; a < 3; ++a) {
+        const std::int32_t near_bound = rays.near_bound[a][i];
+        sides.near_side[a] = load(bounds + near_bound);
+        sides.far_side[a] = load(bounds + ((3 + 2 * a) * block_width - near_bound));
+    }
+    return sides;
+}
+
+// Which children the ray enters before t_max, and where.
+HWY_INLINE Mask enter_children(const ChildSides& sides, const SingleRay& ray, Real t_max, Real& entry) {
     const RayStream& s = ray.stream;
     const auto near_t = [&](int a) HWY_ATTR {
-        const Real bound = load(bounds + s.near_bound[a][ray.i]);
-        return mul_sub(bound, Real(s.reciprocal[a][ray.i]), Real(s.near_offset[a][ray.i]));
+        return mul_sub(sides.near_side[a], Real(s.reciprocal[a][ray.i]), Real(s.near_offset[a][ray.i]));
     };
     const auto far_t = [&](int a) HWY_ATTR {
-        const Real bound = load(bounds + ((3 + 2 * a) * block_width - s.near_bound[a][ray.i]));
-        return mul_sub(bound, Real(s.reciprocal[a][ray.i]), Real(s.far_offset[a][ray.i]));
+        return mul_sub(sides.far_side[a], Real(s.reciprocal[a][ray.i]), Real(s.far_offset[a][ray.i]));
     };
     entry = max(max(near_t(0), near_t(1)), max(near_t(2), ray.t_min()));
     const Real exit = min(min(far_t(0), far_t(1)), min(far_t(2), t_max));

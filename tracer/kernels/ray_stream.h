@@ -31,6 +31,7 @@ struct alignas(64) RayStream {
     float reciprocal[3][beam_rays], near_offset[3][beam_rays], far_offset[3][beam_rays];
     float padding[3][beam_rays];            // in t
     std::int32_t near_bound[3][beam_rays];  // floats from the start of a BvhNode
+    std::uint64_t rises[3] = {};            // which rays do along the axis, rather than fall
 };
 
 // Largest coordinate of everything in the hierarchy, in magnitude.
@@ -64,7 +65,9 @@ HWY_INLINE void prepare_rays(Vec3 origin, Vec3 direction, Real t_min, float reac
         store(offset + padding_in_t, stream.near_offset[a] + at);
         store(offset - padding_in_t, stream.far_offset[a] + at);
         const Int lower(a * block_width), upper((3 + a) * block_width);
-        store(select(safe > Real(0.0f), lower, upper), stream.near_bound[a] + at);
+        const Mask rises = safe > Real(0.0f);
+        store(select(rises, lower, upper), stream.near_bound[a] + at);
+        stream.rises[a] |= rays_of(bits(rises), group);
     }
     store(Real(1.0f) / dot(direction, direction), stream.inverse_squared_length + at);
     store(growth_of(direction), stream.growth + at);

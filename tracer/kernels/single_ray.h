@@ -32,7 +32,8 @@ bool traverse_single(const CompiledScene& scene, const Bvh& bvh, BvhReference at
         } else {
             const BvhNode& node = bvh.nodes[at.bits];
             Real entry;
-            const std::uint32_t entered = bits(enter_children(node, ray, Real(hit.t), entry));
+            const std::uint32_t entered =
+                bits(enter_children(child_sides(node, ray.stream, ray.i), ray, Real(hit.t), entry));
             if (stack.enter<!any_hit>(entered, entry, node.child, at)) continue;
         }
         if (!stack.leave(hit.t * (1.0f + slab_slack), at)) return false;

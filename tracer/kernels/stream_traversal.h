@@ -12,6 +12,7 @@
 
 #include <bit>
 #include <limits>
+#include <type_traits>
 
 #include "tracer/kernels/single_ray.h"
 
@@ -51,21 +52,36 @@ class StreamStack {
     int size_ = 0;
 };
 
-// Sends the rays to the children that they enter, the nearest on top.
-HWY_INLINE void visit_node(const CompiledScene& scene, const Bvh& bvh, const BvhNode& node, std::uint64_t active,
+// All rays that rise and fall along the same axes as ray i.
+HWY_INLINE std::uint64_t octant_of(const RayStream& rays, int i) {
+    std::uint64_t octant = ~std::uint64_t{0};
+    for (const std::uint64_t rises : rays.rises) octant &= (rises >> i & 1) != 0 ? rises : ~rises;
+    return octant;
+}
+
+// Sends the rays to the children that they enter, the nearest on top. Octant by octant, so that the sides of the boxes
+// are read once for many rays: what a test reads is what it takes.
+HWY_INLINE void visit_node(const CompiledScene& scene, const Bvh& bvh, BvhReference at, std::uint64_t active,
                            const RayStream& rays, const BeamHits& hits, StreamStack& stack) {
+    const BvhNode& node = bvh.nodes[at.bits];
     HWY_ALIGN std::int32_t entered[beam_rays];  // by ray: which children
     HWY_ALIGN float first_entry[lanes];         // by child
     std::uint32_t children = 0;
     Real nearest = Real(std::numeric_limits<float>::infinity());
-    for (std::uint64_t rest = active; rest != 0; rest &= rest - 1) {
-        const int i = std::countr_zero(rest);
-        Real entry;
-        const Mask enters = enter_children(node, {rays, i}, Real(hits.t[i]), entry);
-        nearest = select(enters, min(nearest, entry), nearest);
-        const std::uint32_t own = bits(enters);
-        entered[i] = static_cast<std::int32_t>(own);
-        children |= own;
+    for (std::uint64_t rest = active; rest != 0;) {
+        const int first = std::countr_zero(rest);
+        const ChildSides sides = child_sides(node, rays, first);
+        std::uint64_t octant = rest & octant_of(rays, first);
+        rest &= ~octant;
+        for (; octant != 0; octant &= octant - 1) {
+            const int i = std::countr_zero(octant);
+            Real entry;
+            const Mask enters = enter_children(sides, {rays, i}, Real(hits.t[i]), entry);
+            nearest = select(enters, min(nearest, entry), nearest);
+            const std::uint32_t own = bits(enters);
+            entered[i] = static_cast<std::int32_t>(own);
+            children |= own;
+        }
     }
     store(nearest, first_entry);
     fetch_children(scene.hierarchy, bvh, node, children);
@@ -86,71 +102,43 @@ struct BlockHits {
     alignas(64) float t[beam_rays][lanes], u[beam_rays][lanes], v[beam_rays][lanes];
     std::uint32_t lanes_hit[beam_rays];
     int ray[beam_rays];
-    int count = 0;
 };
 
-HWY_INLINE void take_hits(const BlockHits& found, const std::int32_t* ids, std::int32_t first_id, BeamHits& hits) {
-    for (int n = 0; n < found.count; ++n) {
+// Of triangles or spheres, ids counted from first_id; returns the any-hit rays that are done.
+template <bool any_hit, class Block>
+HWY_INLINE std::uint64_t visit_block(const Block& block, std::int32_t first_id, std::uint64_t active,
+                                     const RayStream& rays, BeamHits& hits) {
+    constexpr bool has_weights = std::is_same_v<Block, TriangleBlock>;
+    BlockHits found;
+    int count = 0;
+    std::uint64_t done = 0;
+    for (; active != 0; active &= active - 1) {
+        const int i = std::countr_zero(active);
+        const auto met = meet_block(block, {rays, i});
+        const std::uint32_t lanes_hit = bits(met.hit & within<any_hit>(met.t, Real(hits.t[i])));
+        if constexpr (any_hit) {
+            done |= static_cast<std::uint64_t>(lanes_hit != 0) << i;
+        } else {
+            store(met.t, found.t[count]);
+            if constexpr (has_weights) {
+                store(met.u, found.u[count]);
+                store(met.v, found.v[count]);
+            }
+            found.lanes_hit[count] = lanes_hit;
+            found.ray[count] = i;
+            count += lanes_hit != 0;
+        }
+    }
+    for (int n = 0; n < count; ++n) {
         const int i = found.ray[n];
         RayHit hit = hit_of(hits, i);
-        const int l = take_nearest(found.lanes_hit[n], load(found.t[n]), ids, first_id, hit);
+        const int l = take_nearest(found.lanes_hit[n], load(found.t[n]), block.id, first_id, hit);
         if (l < 0) continue;
-        hit.u = found.u[n][l], hit.v = found.v[n][l];
+        hit.u = has_weights ? found.u[n][l] : 0;
+        hit.v = has_weights ? found.v[n][l] : 0;
         set_hit(hit, i, hits);
     }
-}
-
-template <bool any_hit>
-HWY_INLINE std::uint64_t visit_block(const TriangleBlock& block, std::uint64_t active, const RayStream& rays,
-                                     BeamHits& hits) {
-    BlockHits hit;
-    std::uint64_t done = 0;
-    for (; active != 0; active &= active - 1) {
-        const int i = std::countr_zero(active);
-        const TriangleLanes found = meet_block(block, {rays, i});
-        const std::uint32_t lanes_hit = bits(found.hit & within<any_hit>(found.t, Real(hits.t[i])));
-        if constexpr (any_hit) {
-            done |= static_cast<std::uint64_t>(lanes_hit != 0) << i;
-        } else {
-            store(found.t, hit.t[hit.count]);
-            store(found.u, hit.u[hit.count]);
-            store(found.v, hit.v[hit.count]);
-            hit.lanes_hit[hit.count] = lanes_hit;
-            hit.ray[hit.count] = i;
-            hit.count += lanes_hit != 0;
-        }
-    }
-    if constexpr (!any_hit) take_hits(hit, block.id, 0, hits);
     return done;
-}
-
-template <bool any_hit>
-HWY_INLINE std::uint64_t visit_block(const SphereBlock& block, std::int32_t first_id, std::uint64_t active,
-                                     const RayStream& rays, BeamHits& hits) {
-    BlockHits hit;
-    std::uint64_t done = 0;
-    for (; active != 0; active &= active - 1) {
-        const int i = std::countr_zero(active);
-        const SphereLanes found = meet_block(block, {rays, i});
-        const std::uint32_t lanes_hit = bits(found.hit & within<any_hit>(found.t, Real(hits.t[i])));
-        if constexpr (any_hit) {
-            done |= static_cast<std::uint64_t>(lanes_hit != 0) << i;
-        } else {
-            store(found.t, hit.t[hit.count]);
-            hit.lanes_hit[hit.count] = lanes_hit;
-            hit.ray[hit.count] = i;
-            hit.count += lanes_hit != 0;
-        }
-    }
-    if constexpr (any_hit) return done;
-    for (int n = 0; n < hit.count; ++n) {
-        const int i = hit.ray[n];
-        RayHit nearest = hit_of(hits, i);
-        if (take_nearest(hit.lanes_hit[n], load(hit.t[n]), block.id, first_id, nearest) < 0) continue;
-        nearest.u = nearest.v = 0;
-        set_hit(nearest, i, hits);
-    }
-    return 0;
 }
 
 // Tests the blocks of a leaf; returns the any-hit rays that are done.
@@ -159,9 +147,10 @@ HWY_INLINE std::uint64_t visit_leaf(const CompiledScene& scene, BvhReference lea
                                     const RayStream& rays, BeamHits& hits) {
     std::uint64_t done = 0;
     for (std::uint32_t i = leaf.first(), end = i + leaf.blocks(); i != end; ++i)
-        done |= leaf.spheres() ? visit_block<any_hit>(scene.hierarchy.sphere_blocks[i], scene.triangle_count,
-                                                      active & ~done, rays, hits)
-                               : visit_block<any_hit>(scene.hierarchy.triangle_blocks[i], active & ~done, rays, hits);
+        done |= leaf.spheres()
+                    ? visit_block<any_hit>(scene.hierarchy.sphere_blocks[i], scene.triangle_count, active & ~done, rays,
+                                           hits)
+                    : visit_block<any_hit>(scene.hierarchy.triangle_blocks[i], 0, active & ~done, rays, hits);
     return done;
 }
 
@@ -184,7 +173,7 @@ std::uint64_t traverse_stream(const CompiledScene& scene, const Bvh& bvh, std::u
         } else if (visit.at.leaf()) {
             done |= visit_leaf<any_hit>(scene, visit.at, visitors, rays, hits);
         } else {
-            visit_node(scene, bvh, bvh.nodes[visit.at.bits], visitors, rays, hits, stack);
+            visit_node(scene, bvh, visit.at, visitors, rays, hits, stack);
         }
     }
     return done;
