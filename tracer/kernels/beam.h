@@ -37,13 +37,14 @@ struct Beam {
     GroupRanges range_u, range_v;
     Real growth[beam_groups], inverse_squared_length[beam_groups];
     const BeamRays* rays;
-    BeamHits* hits;              // nearest so far, of active rays; null for any-hit beams
-    int k, a, b;                 // axes: depth, U, V
-    float sign;                  // of the rays along k
-    float padding;               // of boxes, scene units
-    float u0, u1, v0, v1;        // ranges of the slopes, a hair wider
-    float depth_min, depth_max;  // where a hit would still count, along k
-    std::uint64_t active;        // any-hit rays that hit are not active any more
+    BeamHits* hits;                  // nearest so far, of active rays; null for any-hit beams
+    int k, a, b;                     // axes: depth, U, V
+    float sign;                      // of the rays along k
+    float padding;                   // of boxes, scene units
+    float u0, u1, v0, v1;            // ranges of the slopes, a hair wider
+    float depth_min, depth_max;      // where a hit would still count, along k
+    float group_depth[beam_groups];  // depth_max group by group
+    std::uint64_t active;            // any-hit rays that hit are not active any more
     bool ready_for_triangles, ready_for_spheres;
     int tests_left;  // of a triangle against a group; below zero the traversal gives up
 };
@@ -143,15 +144,18 @@ HWY_INLINE std::uint64_t lower_half(const Beam& beam) {
     return lower & beam.active;
 }
 
-// The depth beyond which nothing matters: of the farthest of the active rays' limits.
+// The depths beyond which nothing matters: of the farthest of the active rays' limits. A hit's distance is rounded more
+// coarsely than a corner's depth, hence the slack.
+inline constexpr float depth_slack = 1e-5f;
 HWY_INLINE void shorten_beam(Beam& beam) {
-    Real farthest(0.0f);
+    Real depth[beam_groups];
     for (int g = 0; g < beam_groups; ++g) {
         const int at = g * lanes;
-        const Real depth = limit_of(beam, at) * (load(beam.rays->direction[beam.k] + at) * Real(beam.sign));
-        farthest = select(mask_of_bits(lanes_of(beam.active, g)), max(depth, farthest), farthest);
+        const Real limit = limit_of(beam, at) * (load(beam.rays->direction[beam.k] + at) * Real(beam.sign));
+        depth[g] = select(mask_of_bits(lanes_of(beam.active, g)), limit * Real(1.0f + depth_slack), Real(0.0f));
     }
-    beam.depth_max = (1.0f + slab_slack) * reduce_max(farthest);
+    reduce_max(depth, beam.group_depth);
+    beam.depth_max = *std::max_element(beam.group_depth, beam.group_depth + beam_groups);
 }
 
 // Ready for traversal, its ranges measured.

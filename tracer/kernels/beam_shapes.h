@@ -43,8 +43,8 @@ HWY_INLINE bool take_hits(Mask hit, Real t, Real u, Real v, std::int32_t id, int
 }
 
 // Which triangles may touch the beam at all: outside none of its four sides and depths. Corners: along U, V and depth.
-HWY_INLINE Mask touches_beam(const Beam& beam, const Vec3 (&p)[3]) {
-    Mask keep = min(min(p[0].z, p[1].z), p[2].z) <= Real(beam.depth_max);
+HWY_INLINE Mask touches_beam(const Beam& beam, const Vec3 (&p)[3], Real nearest) {
+    Mask keep = nearest <= Real(beam.depth_max);
     const auto spans = [&](Real x0, Real x1, Real x2, float low, float high) HWY_ATTR {
         const Real below = min(min(neg_mul_add(Real(high), p[0].z, x0), neg_mul_add(Real(high), p[1].z, x1)),
                                neg_mul_add(Real(high), p[2].z, x2));
@@ -76,7 +76,7 @@ HWY_INLINE void store(Vec3 value, float (&to)[3][lanes]) {
 }
 
 // The three weights of a triangle are linear in (U, V) but for a common factor: a triangle touches a group of rays
-// unless one of them is negative over the group's whole range.
+// unless one of them is negative over the group's whole range, or the triangle lies behind all that the group hit.
 struct TriangleEdges {
     Vec3 edge[3];
     Real steepness_u[3], steepness_v[3];  // magnitudes of edge.x and edge.y
@@ -99,7 +99,7 @@ HWY_INLINE TriangleEdges triangle_edges(const BeamTriangles& triangles, const Be
     }
     return e;
 }
-HWY_INLINE Mask touches_group(const Beam& beam, int g, const TriangleEdges& e) {
+HWY_INLINE Mask touches_group(const Beam& beam, int g, Real nearest, const TriangleEdges& e) {
     const Real middle_u(beam.range_u.middle[g]), middle_v(beam.range_v.middle[g]);
     const Real half_u(beam.range_u.half[g]), half_v(beam.range_v.half[g]);
     Real least(infinity);
@@ -108,7 +108,7 @@ HWY_INLINE Mask touches_group(const Beam& beam, int g, const TriangleEdges& e) {
         const Real most = mul_add(e.steepness_u[i], half_u, mul_add(e.steepness_v[i], half_v, middle));
         least = min(most, least);
     }
-    return least >= Real(0.0f);
+    return (least >= Real(0.0f)) & (nearest <= Real(beam.group_depth[g]));
 }
 
 template <bool any_hit>
@@ -118,7 +118,8 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, const float* origin, 
         p[i] = {load(block.corner[i][beam.a]) - Real(origin[beam.a]),
                 load(block.corner[i][beam.b]) - Real(origin[beam.b]),
                 (load(block.corner[i][beam.k]) - Real(origin[beam.k])) * Real(beam.sign)};
-    const std::uint32_t kept = bits(touches_beam(beam, p));
+    const Real nearest = min(min(p[0].z, p[1].z), p[2].z);
+    const std::uint32_t kept = bits(touches_beam(beam, p, nearest));
     if (kept == 0) return;
     if (!beam.ready_for_triangles) prepare_for_triangles(beam);
 
@@ -131,7 +132,7 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, const float* origin, 
     store(forms.spread, triangles.spread);
     const TriangleEdges edges = triangle_edges(triangles, beam);
     Pairs pairs = 0;
-    for (int g = 0; g < beam_groups; ++g) pairs |= rays_of(kept & bits(touches_group(beam, g, edges)), g);
+    for (int g = 0; g < beam_groups; ++g) pairs |= rays_of(kept & bits(touches_group(beam, g, nearest, edges)), g);
 
     beam.tests_left -= std::popcount(pairs);
     bool met = false;
@@ -145,13 +146,14 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, const float* origin, 
     if (met || beam.active != active) shorten_beam(beam);
 }
 
-// A sphere touches a group of rays unless it lies wholly beyond one of the planes through the group's steepest slopes.
-HWY_INLINE Mask touches_group(const Beam& beam, int g, Vec3 center, Real radius) {
+// A sphere touches a group of rays unless it lies wholly beyond one of the planes through the group's steepest slopes,
+// or behind all that the group hit.
+HWY_INLINE Mask touches_group(const Beam& beam, int g, Real nearest, Vec3 center, Real radius) {
     const auto within = [&](Real x, const GroupRanges& range) HWY_ATTR {
         const Real beyond = abs(neg_mul_add(Real(range.middle[g]), center.z, x)) - Real(range.half[g]) * abs(center.z);
         return beyond <= radius * Real(range.stretch[g]);
     };
-    return within(center.x, beam.range_u) & within(center.y, beam.range_v);
+    return within(center.x, beam.range_u) & within(center.y, beam.range_v) & (nearest <= Real(beam.group_depth[g]));
 }
 
 template <bool any_hit>
@@ -161,13 +163,14 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std:
     store(center, centers);
     const Real grown = load(block.radius) + Real(beam.padding);
     const Vec3 turned = {load(centers[beam.a]), load(centers[beam.b]), load(centers[beam.k]) * Real(beam.sign)};
+    const Real nearest = turned.z - grown;
     const std::uint32_t deep_enough =
-        bits((turned.z + grown >= Real(beam.depth_min)) & (turned.z - grown <= Real(beam.depth_max)));
+        bits((turned.z + grown >= Real(beam.depth_min)) & (nearest <= Real(beam.depth_max)));
     if (deep_enough == 0) return;
     if (!beam.ready_for_spheres) prepare_for_spheres(beam);
     Pairs pairs = 0;
     for (int g = 0; g < beam_groups; ++g)
-        pairs |= rays_of(deep_enough & bits(touches_group(beam, g, turned, grown)), g);
+        pairs |= rays_of(deep_enough & bits(touches_group(beam, g, nearest, turned, grown)), g);
 
     bool met = false;
     const std::uint64_t active = beam.active;
