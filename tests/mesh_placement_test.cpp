@@ -83,8 +83,8 @@ TEST(MeshPlacement, AreasDoNotWeighNormals) {
     mesh.positions[3] = {0, 100, 100};  // a far larger second face in the same direction as before
     TriangleMesh small = folded_square();
     small.positions[3] = {0, 0.01f, 0.01f};
-    const glm::vec3 second_large = geometric_normal({{mesh.positions[0], mesh.positions[2], mesh.positions[3]}});
-    const glm::vec3 second_small = geometric_normal({{small.positions[0], small.positions[2], small.positions[3]}});
+    const glm::vec3 second_large = geometric_normal(mesh.positions[0], mesh.positions[2], mesh.positions[3]);
+    const glm::vec3 second_small = geometric_normal(small.positions[0], small.positions[2], small.positions[3]);
     ASSERT_LT(glm::length(second_large - second_small), 1e-5);
     EXPECT_LT(glm::length(normal_at(corner_normals(mesh)[0], 0) - normal_at(corner_normals(small)[0], 0)), 1e-5);
 }
@@ -119,7 +119,7 @@ TEST(MeshPlacement, TrianglesWithoutAreaHaveAUnitNormalAndWeighNothing) {
     EXPECT_EQ(normal_at(normals[0], 0), normal_at(without[0], 0));
     for (const VertexNormals& normal : normals)
         for (int corner = 0; corner < 3; ++corner) EXPECT_NEAR(glm::length(normal_at(normal, corner)), 1, 1e-6);
-    EXPECT_NEAR(glm::length(geometric_normal({{glm::vec3(1), glm::vec3(1), glm::vec3(1)}})), 1, 1e-6);
+    EXPECT_NEAR(glm::length(geometric_normal(glm::vec3(1), glm::vec3(1), glm::vec3(1))), 1, 1e-6);
 }
 
 }  // namespace

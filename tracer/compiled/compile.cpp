@@ -137,10 +137,10 @@ void compile_mesh(const MeshSpan& span, std::int32_t surface, CompiledScene& com
     const auto& faces = span.triangles->faces;
 #pragma omp parallel for schedule(static) if (faces.size() >= worth_threads)
     for (std::size_t f = 0; f < faces.size(); ++f) {
-        TriangleCorners& triangle = corners[span.first + f];
-        for (std::size_t corner = 0; corner < 3; ++corner) triangle.p[corner] = positions[faces[f][corner]];
+        const auto& [a, b, c] = faces[f];
+        corners[span.first + f] = {{positions[a], positions[b], positions[c]}};
         TriangleRecord& record = compiled.triangles[span.first + f];
-        copy(geometric_normal(triangle), record.normal);
+        copy(geometric_normal(positions[a], positions[b], positions[c]), record.normal);
         record.surface = surface;
     }
     if (!span.mesh->smooth) return;
@@ -170,9 +170,9 @@ void compile_triangles(const Scene& scene, const std::map<std::filesystem::path,
     for (const MeshSpan& span : spans) compile_mesh(span, surfaces.index_of(span.mesh->texture), compiled, corners);
     for (std::size_t f = 0; f < scene.faces.size(); ++f) {
         const Face& face = scene.faces[f];
-        TriangleCorners& triangle = corners[count + f];
-        triangle = {{limited(face.a), limited(face.b), limited(face.c)}};
-        copy(geometric_normal(triangle), compiled.triangles[count + f].normal);
+        const glm::vec3 a = limited(face.a), b = limited(face.b), c = limited(face.c);
+        corners[count + f] = {{a, b, c}};
+        copy(geometric_normal(a, b, c), compiled.triangles[count + f].normal);
         compiled.triangles[count + f].surface = surfaces.index_of(face.texture);
     }
 }

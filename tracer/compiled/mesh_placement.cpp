@@ -104,8 +104,8 @@ std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh) {
     return normals;
 }
 
-glm::vec3 geometric_normal(const TriangleCorners& triangle) {
-    const glm::dvec3 n = face_direction(triangle.p[0], triangle.p[1], triangle.p[2]);
+glm::vec3 geometric_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const glm::dvec3 n = face_direction(a, b, c);
     return n == glm::dvec3(0) ? glm::vec3(0, 0, 1) : glm::vec3(n);
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/compiled/hierarchy.h"
 #include "tracer/description/obj_reader.h"
 #include "tracer/description/scene.h"
 
@@ -32,6 +31,6 @@ std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh);
 void corner_normals(const TriangleMesh& mesh, std::span<VertexNormals> normals);  // one per face
 
 // Unit normal by the order a, b, c; some unit vector for a triangle without area, which no ray hits.
-glm::vec3 geometric_normal(const TriangleCorners& triangle);
+glm::vec3 geometric_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 }  // namespace raywalk
