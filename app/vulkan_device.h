@@ -1,7 +1,10 @@
 // A Vulkan instance, the device that shows frames, and memory from it. Only the vulkan_* and presenter sources include
-// this: the header below takes seconds to compile.
+// this: the header below takes seconds to compile, and would take twice as long with all that is not needed of it.
 #pragma once
 
+#define VULKAN_HPP_NO_SETTERS
+#define VULKAN_HPP_NO_SMART_HANDLE
+#define VULKAN_HPP_NO_SPACESHIP_OPERATOR
 #define VULKAN_HPP_NO_STRUCT_CONSTRUCTORS
 #define VK_NO_PROTOTYPES
 #include <span>
