@@ -34,7 +34,8 @@ suite() {  # suite PRESET [CTEST OPTIONS...]
     ctest --test-dir "$root/build/$preset" --output-on-failure --no-tests=error -j "$jobs" "$@"
 }
 
-build_with_tests() { configure "$1" RAYWALK_TESTS=ON && build "$1"; }
+build_with_tests() { configure "$@" RAYWALK_TESTS=ON RAYWALK_UNITY=ON && build "$1"; }
+build_sanitized() { configure "$1" && "$root/tests/sanitized.sh" "$root/build/$1" --only-build >&2; }
 
 sources() { git -C "$root" ls-files -z -- '*.h' '*.cpp' '*.inl'; }
 check_format() { (cd "$root" && sources | xargs -0 -r clang-format --dry-run --Werror); }
@@ -57,9 +58,6 @@ outcome_of() {  # outcome_of PROCESS LOG: waits for what was started in the back
     return "$outcome"
 }
 
-# What is built runs at once, to make the meshes and textures of the scenes.
-build_for_tsan() { TSAN_OPTIONS=ignore_noninstrumented_modules=1 build_with_tests tsan; }
-
 vulkan_driver=$(vulkan_driver_package)
 packages=("${build_packages[@]}" "${test_packages[@]}" ${vulkan_driver:+"$vulkan_driver"})
 [[ $full == yes ]] && packages+=("${full_test_packages[@]}" "${bench_packages[@]}")
@@ -73,18 +71,18 @@ else
     stage "format" check_format
     stage "build, warnings are errors" build_with_tests release RAYWALK_WERROR=ON
     stage "whole suite" suite release
-    stage "build for address and undefined-behaviour sanitizers" build_with_tests asan
+    stage "build for address and undefined-behaviour sanitizers" build_sanitized asan
     stage "suite under these" "$root/tests/sanitized.sh" "$root/build/asan"
     stage "coverage" "$root/tests/coverage.sh" "$root/build/asan" 95
-    stage "build for the thread sanitizer" build_for_tsan
+    stage "build for the thread sanitizer" build_sanitized tsan
     stage "suite under it" "$root/tests/sanitized.sh" "$root/build/tsan"
-    # Faults are planted and built one by one, which keeps one core busy; the fuzzers share the others' time.
+    # Faults are planted and built one by one, which keeps one core busy; fuzzers and lint share the others' time.
     faults_log=$root/build/faults.log
     "$root/tests/mutations/run.sh" </dev/null >"$faults_log" 2>&1 &
     faults=$!
     stage "fuzzing, a minute for each target, while faults are planted" "$root/tests/fuzz/run.sh" 60
+    stage "lint, while faults are planted" lint
     stage "deliberate faults, the rest of them" outcome_of "$faults" "$faults_log"
-    stage "lint" lint
 fi
 
 printf '\n'

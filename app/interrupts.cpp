@@ -11,10 +11,10 @@ namespace {
 
 // Signal handlers can reach nothing but what is global.
 std::atomic<bool> flag = false;
-std::atomic<bool> graceful = false;
+std::atomic<bool> is_graceful = false;
 
 void handle(int) {
-    if (graceful && !flag) {
+    if (is_graceful && !flag) {
         flag = true;
         return;
     }
@@ -47,8 +47,8 @@ void catch_interrupts() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-GracefulInterrupts::GracefulInterrupts() { graceful = true; }
-GracefulInterrupts::~GracefulInterrupts() { graceful = false; }
+GracefulInterrupts::GracefulInterrupts() { is_graceful = true; }
+GracefulInterrupts::~GracefulInterrupts() { is_graceful = false; }
 
 const std::atomic<bool>& interrupted() { return flag; }
 

@@ -53,7 +53,7 @@ nlohmann::ordered_json walk_statistics(const Options& options, const LoadedScene
     return statistics;
 }
 
-int walk(const Options& options, const LoadedScene& loaded) {
+int walk_in_window(const Options& options, const LoadedScene& loaded) {
     const GracefulInterrupts graceful;
     const std::string name = printable(options.scene.filename().string());
     Window window(picture_size(options, loaded.scene), "Raywalk - " + name);
@@ -94,7 +94,7 @@ int walk(const Options& options, const LoadedScene& loaded) {
 
 int walk_command(const Options& options, LoadedScene&& loaded) {
     try {
-        return walk(options, loaded);
+        return walk_in_window(options, loaded);
     } catch (const NoDisplayError& error) {
         print_error(error.what());
         return exit_no_display;

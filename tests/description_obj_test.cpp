@@ -22,14 +22,14 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-TriangleMesh parse(std::string_view text, const Limits& limits = {}) {
+TriangleMesh triangles_of(std::string_view text, const Limits& limits = {}) {
     std::vector<Diagnostic> warnings;
     return parse_obj(text, "x.obj", limits, warnings);
 }
 
-std::string said_of(std::string_view text, const Limits& limits = {}) {
+std::string said_of_mesh(std::string_view text, const Limits& limits = {}) {
     try {
-        parse(text, limits);
+        triangles_of(text, limits);
     } catch (const InputError& error) {
         return error.what();
     }
@@ -52,7 +52,7 @@ TEST(ObjTest, EveryIndexFormNamesTheSameTriangle) {
     for (const char* face : {"f 1 2 3", "f 1/1 2/1 3/1", "f 1//1 2//1 3//2", "f 1/1/1 2/1/1 3/1/2", "f -4 -3 -2",
                              "f 1 -3 3", "f -4/-1 2/1 -2/1", "f -4//-2 2//-2 -2//2", "f\t1/1/1  2/1/1\t 3/1/2 \t\r",
                              "  f 1 2 3", "f 1 \\\n 2 \\\r\n3", "f 1\\\n 2 3"}) {
-        const TriangleMesh mesh = parse(std::string(square) + face);
+        const TriangleMesh mesh = triangles_of(std::string(square) + face);
         EXPECT_EQ(mesh.faces, expected) << face;
         EXPECT_EQ(mesh.positions.size(), 4u);
         if (contains(face, "//") || contains(face, "/1/")) {
@@ -64,20 +64,20 @@ TEST(ObjTest, EveryIndexFormNamesTheSameTriangle) {
 }
 
 TEST(ObjTest, PolygonsAreFansFromTheirFirstCorner) {
-    const TriangleMesh mesh = parse(std::string(square) + "v 0 2 0\nf 2 3//1 4 5 1\nf 1 2 3\n");
+    const TriangleMesh mesh = triangles_of(std::string(square) + "v 0 2 0\nf 2 3//1 4 5 1\nf 1 2 3\n");
     EXPECT_EQ(mesh.faces, (std::vector<Corners>{{1, 2, 3}, {1, 3, 4}, {1, 4, 0}, {0, 1, 2}}));
     EXPECT_EQ(mesh.normal_faces,
               (std::vector<std::array<std::int32_t, 3>>{{-1, 0, -1}, {-1, -1, -1}, {-1, -1, -1}, {-1, -1, -1}}));
 }
 
 TEST(ObjTest, FacesMayStandBeforeTheirVertices) {
-    EXPECT_EQ(parse("f 1 2 3\n" + std::string(square)).faces, (std::vector<Corners>{{0, 1, 2}}));
-    EXPECT_TRUE(contains(said_of("f -1 -2 -3\n" + std::string(square)), "not so many vertices stand above"));
+    EXPECT_EQ(triangles_of("f 1 2 3\n" + std::string(square)).faces, (std::vector<Corners>{{0, 1, 2}}));
+    EXPECT_TRUE(contains(said_of_mesh("f -1 -2 -3\n" + std::string(square)), "not so many vertices stand above"));
 }
 
 TEST(ObjTest, WeightsColoursAndSigns) {
     const TriangleMesh mesh =
-        parse("v +1 -2 .5\nv 1. 2e0 3E-1 1\nv 0 0 0 0.1 0.2 0.3\nv 1 2 3 1 0.1 0.2 0.3\nf 1 2 3\n");
+        triangles_of("v +1 -2 .5\nv 1. 2e0 3E-1 1\nv 0 0 0 0.1 0.2 0.3\nv 1 2 3 1 0.1 0.2 0.3\nf 1 2 3\n");
     EXPECT_EQ(mesh.positions[0], glm::vec3(1, -2, 0.5f));
     EXPECT_EQ(mesh.positions[1], glm::vec3(1, 2, 0.3f));
     EXPECT_EQ(mesh.positions[3], glm::vec3(1, 2, 3));
@@ -110,7 +110,7 @@ TEST(ObjTest, NumbersAreCorrectlyRounded) {
           "0.00000000000000000000000000000000000001", "123456789012345678901234567890", "1e-400"})
         add(edge);
     while (expected.size() % 3 != 0) add("0");
-    const TriangleMesh mesh = parse(text + "\nf 1 2 3\n");
+    const TriangleMesh mesh = triangles_of(text + "\nf 1 2 3\n");
     ASSERT_EQ(mesh.positions.size() * 3, expected.size());
     const auto* got = reinterpret_cast<const float*>(mesh.positions.data());
     for (std::size_t i = 0; i < expected.size(); ++i)
@@ -133,7 +133,7 @@ TEST(ObjTest, NumbersNearTheMiddleOfTwoFloatsAreCorrectlyRounded) {
         text += (i % 3 == 0 ? "\nv " : " ") + std::string(buffer);
         expected.push_back(std::strtof(buffer, nullptr));
     }
-    const TriangleMesh mesh = parse(text + "\nf 1 2 3\n");
+    const TriangleMesh mesh = triangles_of(text + "\nf 1 2 3\n");
     ASSERT_EQ(mesh.positions.size() * 3, expected.size());
     const auto* got = reinterpret_cast<const float*>(mesh.positions.data());
     for (std::size_t i = 0; i < expected.size(); ++i)
@@ -250,7 +250,7 @@ TEST(ObjTest, TheMeshIsThatOfANaiveReaderForAnyNumberOfThreads) {
         ASSERT_GT(naive.faces.size(), 10000u);
         for (const int count : {1, 2, 7}) {
             omp_set_num_threads(count);
-            expect_same(naive, parse(text));
+            expect_same(naive, triangles_of(text));
         }
         omp_set_num_threads(threads);
     }
@@ -260,11 +260,12 @@ TEST(ObjTest, MistakesFarIntoALargeFileHaveTheirLine) {
     std::string text = random_obj(5, 2u << 20);
     const auto line = std::ranges::count(text, '\n') + 1;
     const std::string place = "x.obj:" + std::to_string(line);
-    EXPECT_TRUE(contains(said_of(text + "f 1 2 x\n" + random_obj(6, 1u << 20)), place + ":7: error: 'x'"));
-    EXPECT_TRUE(contains(said_of(text + "f 1 2 99999999\n"), place + ":7: error: there is no vertex 99999999"));
-    EXPECT_TRUE(contains(said_of(text + "f 1 2 1 \\\n -9999999/1/1\n"),
+    EXPECT_TRUE(contains(said_of_mesh(text + "f 1 2 x\n" + random_obj(6, 1u << 20)), place + ":7: error: 'x'"));
+    EXPECT_TRUE(contains(said_of_mesh(text + "f 1 2 99999999\n"), place + ":7: error: there is no vertex 99999999"));
+    EXPECT_TRUE(contains(said_of_mesh(text + "f 1 2 1 \\\n -9999999/1/1\n"),
                          "x.obj:" + std::to_string(line + 1) + ":2: error: there is no vertex -9999999"));
-    EXPECT_TRUE(contains(said_of(text + "f 1 2 1//99999999\n"), place + ":10: error: there is no normal 99999999"));
+    EXPECT_TRUE(
+        contains(said_of_mesh(text + "f 1 2 1//99999999\n"), place + ":10: error: there is no normal 99999999"));
 }
 
 TEST(ObjTest, MutatedFilesAreReadOrRefusedWithAPlace) {
@@ -281,7 +282,7 @@ TEST(ObjTest, MutatedFilesAreReadOrRefusedWithAPlace) {
         }
         const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1;
         try {
-            const TriangleMesh mesh = parse(text);
+            const TriangleMesh mesh = triangles_of(text);
             for (const Corners& face : mesh.faces)
                 for (const std::uint32_t corner : face) ASSERT_LT(corner, mesh.positions.size());
             for (const auto& face : mesh.normal_faces)
@@ -302,11 +303,11 @@ TEST(ObjTest, TrianglesAreCountedBeforeMemoryIsTaken) {
     Limits limits;
     limits.triangles = 3;
     const std::string three = std::string(square) + "f 1 2 3 4\nf 1 2 3\n";
-    EXPECT_EQ(said_of(three, limits), "read");
-    EXPECT_TRUE(contains(said_of(three + "f 1 2 3\n", limits), "--max-triangles"));
+    EXPECT_EQ(said_of_mesh(three, limits), "read");
+    EXPECT_TRUE(contains(said_of_mesh(three + "f 1 2 3\n", limits), "--max-triangles"));
     std::string bomb = std::string(square) + "f";
     for (int i = 0; i < 1'000'000; ++i) bomb += " 1";
-    EXPECT_TRUE(contains(said_of(bomb, limits), "--max-triangles"));
+    EXPECT_TRUE(contains(said_of_mesh(bomb, limits), "--max-triangles"));
 }
 
 TEST(ObjTest, AFileOverTheBudgetIsNotRead) {

@@ -1,11 +1,19 @@
 #!/usr/bin/env bash
-# The suite under a sanitizer: tests/sanitized.sh BUILD_FOLDER, which was configured with the preset asan or tsan and
-# built. Each executable of tests runs all of its tests in one process: starting one costs more there than most tests do.
+# The suite under a sanitizer: tests/sanitized.sh BUILD_FOLDER [--only-build] builds and runs it. BUILD_FOLDER was
+# configured with the preset asan or tsan; the scenes' files are those that another preset made.
+# Each executable of tests runs all of its tests in one process: starting one costs more there than most tests do.
 # Left out are the tests of texts and pictures that ship (house_tests), which run little of the program, and those that
 # kill it (kill_tests); and, of the others, what runs the code of smaller tests again for minutes.
 set -euo pipefail
-export build=$1
+build=$(realpath "$1")
+export build
 export left_out='*.BuildWorkGrowsAsNLogN:Hierarchies.OfALargeScene*:Hierarchies.HoldAMillion*'
+# The slowest first.
+executables=(shading_tests traversal_tests hierarchy_tests description_tests command_line_tests shipped_tests
+    rendering_tests window_tests app_tests compiled_tests ground_tests)
+ninja -C "$build" "${executables[@]}"
+[[ ${2:-} != --only-build ]] || exit 0
+
 # The memory of the thread sanitizer is a file, and so falls under the limit of the size of files.
 [[ $build != *tsan* ]] || left_out+=':CommandLine.AFileThatMayNotGrow*'
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
@@ -26,6 +34,4 @@ run() {
 export -f run
 
 cd "$build"
-# The slowest first.
-printf '%s\n' shading_tests traversal_tests hierarchy_tests description_tests command_line_tests shipped_tests \
-    rendering_tests window_tests app_tests compiled_tests ground_tests | xargs -P "$(nproc)" -I '{}' bash -c 'run {}'
+printf '%s\n' "${executables[@]}" | xargs -P "$(nproc)" -I '{}' bash -c 'run {}'

@@ -41,4 +41,13 @@ TEST_P(ShippedPicture, IsRenderedWithoutAWarning) {
 INSTANTIATE_TEST_SUITE_P(Every, ShippedPicture, testing::ValuesIn(shipped_scenes()),
                          [](const auto& scene) { return scene.param.stem().string(); });
 
+// In whatever way the generator was compiled: with sanitizers too.
+TEST(GeneratedFile, HasTheSameBitsWhereverItIsMade) {
+    const TemporaryFolder folder;
+    const fs::path mesh = folder.path() / "knot.obj";
+    const Outcome outcome = run({.words = {RAYWALK_GENERATOR, "knot", mesh.string()}});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_TRUE(read_file(mesh) == read_file(fs::path(RAYWALK_ROOT) / "objs/knot.obj"));
+}
+
 }  // namespace

@@ -15,34 +15,34 @@
 namespace raywalk {
 namespace {
 
-constexpr glm::ivec2 window{1280, 720};
+constexpr glm::ivec2 window_size{1280, 720};
 
 double pixels(glm::ivec2 size) { return static_cast<double>(size.x) * size.y; }
 
 // So many frames of a scene that costs so much a pixel.
 void trace(FramePacing& pacing, double seconds_per_pixel, int frames) {
     for (int i = 0; i < frames; ++i) {
-        const double n = pixels(pacing.size(window));
-        pacing.measured(n, n * seconds_per_pixel, window);
+        const double n = pixels(pacing.size(window_size));
+        pacing.measured(n, n * seconds_per_pixel, window_size);
     }
 }
 
 TEST(FramePacing, TheFirstFrameIsSmall) {
     const FramePacing pacing;
-    EXPECT_LT(pixels(pacing.size(window)) * 30, pixels(window));
+    EXPECT_LT(pixels(pacing.size(window_size)) * 30, pixels(window_size));
 }
 
 TEST(FramePacing, AFastSceneIsTracedAtFullSize) {
     FramePacing pacing;
-    trace(pacing, 0.01 / pixels(window), 3);
-    EXPECT_EQ(pacing.size(window), window);
+    trace(pacing, 0.01 / pixels(window_size), 3);
+    EXPECT_EQ(pacing.size(window_size), window_size);
 }
 
 TEST(FramePacing, FramesOfASlowSceneTakeTheTimeOfAFrame) {
     for (const double full_frame : {0.05, 0.2, 1.0, 5.0}) {
         FramePacing pacing;
-        trace(pacing, full_frame / pixels(window), 40);
-        const double seconds = pixels(pacing.size(window)) * full_frame / pixels(window);
+        trace(pacing, full_frame / pixels(window_size), 40);
+        const double seconds = pixels(pacing.size(window_size)) * full_frame / pixels(window_size);
         EXPECT_LE(seconds, 1.0 / 30) << full_frame;
         EXPECT_GE(seconds, 1.0 / 120) << full_frame << ": not smaller than need be";
     }
@@ -50,36 +50,36 @@ TEST(FramePacing, FramesOfASlowSceneTakeTheTimeOfAFrame) {
 
 TEST(FramePacing, TwoLateFramesShrinkTheNextOnes) {
     FramePacing pacing;
-    trace(pacing, 0.01 / pixels(window), 10);
-    trace(pacing, 1.0 / pixels(window), 2);
-    EXPECT_LE(pixels(pacing.size(window)) * 1.0 / pixels(window), 1.0 / 30 * 1.5);
+    trace(pacing, 0.01 / pixels(window_size), 10);
+    trace(pacing, 1.0 / pixels(window_size), 2);
+    EXPECT_LE(pixels(pacing.size(window_size)) * 1.0 / pixels(window_size), 1.0 / 30 * 1.5);
 }
 
 TEST(FramePacing, OneLateFrameIsForgiven) {
     FramePacing pacing;
-    trace(pacing, 0.2 / pixels(window), 30);
-    const glm::ivec2 size = pacing.size(window);
-    trace(pacing, 2.0 / pixels(window), 1);
-    EXPECT_EQ(pacing.size(window), size);
-    trace(pacing, 0.2 / pixels(window), 3);
-    EXPECT_EQ(pacing.size(window), size);
+    trace(pacing, 0.2 / pixels(window_size), 30);
+    const glm::ivec2 size = pacing.size(window_size);
+    trace(pacing, 2.0 / pixels(window_size), 1);
+    EXPECT_EQ(pacing.size(window_size), size);
+    trace(pacing, 0.2 / pixels(window_size), 3);
+    EXPECT_EQ(pacing.size(window_size), size);
 }
 
 TEST(FramePacing, TimesThatScatterDoNotMakeTheSizeHop) {
     FramePacing pacing;
-    trace(pacing, 0.2 / pixels(window), 30);
+    trace(pacing, 0.2 / pixels(window_size), 30);
     int hops = 0;
     for (int i = 0; i < 200; ++i) {
-        const glm::ivec2 before = pacing.size(window);
-        trace(pacing, 0.2 * (i % 2 ? 1.1 : 0.9) / pixels(window), 1);
-        hops += pacing.size(window) != before;
+        const glm::ivec2 before = pacing.size(window_size);
+        trace(pacing, 0.2 * (i % 2 ? 1.1 : 0.9) / pixels(window_size), 1);
+        hops += pacing.size(window_size) != before;
     }
     EXPECT_LE(hops, 1);
 }
 
 TEST(FramePacing, TheShapeOfTheWindowIsKept) {
     FramePacing pacing;
-    trace(pacing, 1.0 / pixels(window), 3);
+    trace(pacing, 1.0 / pixels(window_size), 3);
     for (const glm::ivec2 size : {glm::ivec2{1280, 720}, {500, 900}, {641, 479}}) {
         const glm::ivec2 small = pacing.size(size);
         EXPECT_NEAR(static_cast<double>(small.x) * size.y / size.x, small.y, 1) << size.x << " x " << size.y;

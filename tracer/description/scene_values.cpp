@@ -30,9 +30,9 @@ constexpr Known<double> refraction_indices[] = {
 };
 constexpr Known<bool> booleans[] = {{"true", true}, {"false", false}, {"True", true}, {"False", false}};
 
-enum class Pattern { pure, grid, image };
-constexpr Known<Pattern> patterns[] = {
-    {"PureTexture", Pattern::pure}, {"GridTexture", Pattern::grid}, {"ImageTexture", Pattern::image}};
+enum class PatternName { pure, grid, image };
+constexpr Known<PatternName> patterns[] = {
+    {"PureTexture", PatternName::pure}, {"GridTexture", PatternName::grid}, {"ImageTexture", PatternName::image}};
 
 constexpr int largest_texture = 1'000'000;  // grid density and image size; more would be noise
 
@@ -145,20 +145,20 @@ Material SceneValues::material() {
 
 Texture SceneValues::texture() {
     Texture texture;
-    const auto pattern = one_of<Pattern>("a texture", "a texture", patterns, Pattern::pure);
+    const auto pattern = one_of<PatternName>("a texture", "a texture", patterns, PatternName::pure);
     if (failed_) return texture;
-    form_ = pattern == Pattern::pure   ? "texture PureTexture MATERIAL COLOR"
-            : pattern == Pattern::grid ? "texture GridTexture MATERIAL DENSITY"
-                                       : "texture ImageTexture MATERIAL FILE [SIZE]";
+    form_ = pattern == PatternName::pure   ? "texture PureTexture MATERIAL COLOR"
+            : pattern == PatternName::grid ? "texture GridTexture MATERIAL DENSITY"
+                                           : "texture ImageTexture MATERIAL FILE [SIZE]";
     texture.material = material();
     switch (pattern) {
-        case Pattern::pure:
+        case PatternName::pure:
             texture.pattern = PureTexture{color()};
             break;
-        case Pattern::grid:
+        case PatternName::grid:
             texture.pattern = GridTexture{integer("the density", 1, largest_texture)};
             break;
-        case Pattern::image: {
+        case PatternName::image: {
             ImageTexture image;
             image.file = file(image.where);
             if (!failed_ && more()) image.size = integer("the size", 1, largest_texture);
