@@ -38,7 +38,7 @@ float positive(std::string_view option, const std::string& value, const std::str
     return *number;
 }
 
-glm::ivec2 picture_size(const std::string& value) {
+glm::ivec2 size_in_pixels(const std::string& value) {
     const std::size_t cross = value.find_first_of("xX");
     const std::string_view text = value;
     if (cross != std::string::npos) {
@@ -93,7 +93,7 @@ const OptionSpec table[] = {
      [](Line& line, Value) { line.check = true; }},
 
     {"--size", "", "WxH", picture, "size of the picture in pixels (else the scene's geo)",
-     [](Line& line, Value value) { line.options.size = picture_size(value); }},
+     [](Line& line, Value value) { line.options.size = size_in_pixels(value); }},
     {"--spp", "", "N", picture, "samples per pixel (else the scene's dop count x anti count, else 1)",
      [](Line& line, Value value) {
          // Counts above 2^24 are not exact in single precision.

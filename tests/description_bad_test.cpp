@@ -24,7 +24,7 @@ std::vector<std::string> bad_files() {
 }
 
 // What reading the file says: warnings, then errors; without the place where this project lies.
-std::string said_of(const fs::path& file) {
+std::string messages_of(const fs::path& file) {
     std::vector<Diagnostic> warnings;
     std::string text;
     try {
@@ -47,7 +47,7 @@ class BadFile : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadFile, IsRefusedInTheWordsBesideIt) {
     fs::current_path(RAYWALK_ROOT "/tests/bad");
-    const std::string text = said_of(GetParam());
+    const std::string text = messages_of(GetParam());
     EXPECT_EQ(text.find("read without an error"), std::string::npos);
     const fs::path golden = GetParam() + ".txt";
     if (std::getenv("RAYWALK_RENEW")) std::ofstream(golden) << text;

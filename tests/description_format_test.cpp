@@ -42,7 +42,7 @@ class ScenesFolder {
     TestFolder folder_;
 };
 
-std::string said_of(const std::string& text, const std::filesystem::path& file) {
+std::string said_beside(const std::string& text, const std::filesystem::path& file) {
     std::vector<Diagnostic> warnings;
     try {
         parse_scene(text, file, {}, warnings);
@@ -59,14 +59,14 @@ TEST(FormatTest, EveryExampleIsRead) {
     ASSERT_GE(examples().size(), 8u);
     for (const std::string& example : examples()) {
         const bool whole = example.find("Viewer\n") != std::string::npos;
-        EXPECT_EQ(said_of((whole ? "" : viewer) + example, folder.scene()), "read") << example;
+        EXPECT_EQ(said_beside((whole ? "" : viewer) + example, folder.scene()), "read") << example;
     }
 }
 
 // The words that an error offers: "expected one of A, B, C".
 std::vector<std::string> offered(const std::string& text) {
     const std::string text_before = "expected one of ";
-    const std::string said = said_of(text, "x.scene");
+    const std::string said = said_beside(text, "x.scene");
     const std::size_t begin = said.find(text_before);
     EXPECT_NE(begin, std::string::npos) << said;
     if (begin == std::string::npos) return {};

@@ -38,7 +38,7 @@ std::string said_of_mesh(std::string_view text, const Limits& limits = {}) {
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
-void expect_same(const TriangleMesh& a, const TriangleMesh& b) {
+void expect_same_triangles(const TriangleMesh& a, const TriangleMesh& b) {
     EXPECT_TRUE(a.positions == b.positions);
     EXPECT_TRUE(a.faces == b.faces);
     EXPECT_TRUE(a.normals == b.normals);
@@ -250,7 +250,7 @@ TEST(ObjTest, TheMeshIsThatOfANaiveReaderForAnyNumberOfThreads) {
         ASSERT_GT(naive.faces.size(), 10000u);
         for (const int count : {1, 2, 7}) {
             omp_set_num_threads(count);
-            expect_same(naive, triangles_of(text));
+            expect_same_triangles(naive, triangles_of(text));
         }
         omp_set_num_threads(threads);
     }

@@ -9,7 +9,7 @@ namespace {
 
 using enum WalkKey;
 
-std::string error_of(std::string_view text) {
+std::string script_error(std::string_view text) {
     try {
         parse_walk_script(text, "--keys");
     } catch (const InputError& error) {
@@ -34,21 +34,21 @@ TEST(WalkScript, CountsStandBeforeKeysAndBlanksAnywhere) {
 
 TEST(WalkScript, MistakesNameThePlaceUnderACaret) {
     EXPECT_EQ(
-        error_of("w x"),
+        script_error("w x"),
         "--keys:1:3: error: unknown key 'x'\n  w x\n    ^ expected w s a d (move), U D L R (turn), t (projection) "
         "or q (quit), each with a count before it or without");
-    EXPECT_EQ(error_of("3w 2W"), "--keys:1:5: error: unknown key 'W'\n  3w 2W\n      ^ did you mean 'w'?");
-    EXPECT_EQ(error_of("u"), "--keys:1:1: error: unknown key 'u'\n  u\n  ^ did you mean 'U'?");
-    EXPECT_NE(error_of("w 12").find("--keys:1:3: error: a count without a key after it"), std::string::npos);
-    EXPECT_NE(error_of("0w").find("a count of 0"), std::string::npos);
-    EXPECT_NE(error_of("-3w").find("unknown key '-'"), std::string::npos);
-    EXPECT_NE(error_of("w↑").find("unknown key '↑'"), std::string::npos);
+    EXPECT_EQ(script_error("3w 2W"), "--keys:1:5: error: unknown key 'W'\n  3w 2W\n      ^ did you mean 'w'?");
+    EXPECT_EQ(script_error("u"), "--keys:1:1: error: unknown key 'u'\n  u\n  ^ did you mean 'U'?");
+    EXPECT_NE(script_error("w 12").find("--keys:1:3: error: a count without a key after it"), std::string::npos);
+    EXPECT_NE(script_error("0w").find("a count of 0"), std::string::npos);
+    EXPECT_NE(script_error("-3w").find("unknown key '-'"), std::string::npos);
+    EXPECT_NE(script_error("w↑").find("unknown key '↑'"), std::string::npos);
 }
 
 TEST(WalkScript, CountsHaveALimitThatNoSumPasses) {
     EXPECT_EQ(parse_walk_script("1000000w", "").size(), walk_script_presses);
     for (const char* text : {"1000001w", "99999999999999999999999999w", "1000000w w", "999999w 2d"})
-        EXPECT_NE(error_of(text).find("more than 1000000 presses"), std::string::npos) << text;
+        EXPECT_NE(script_error(text).find("more than 1000000 presses"), std::string::npos) << text;
 }
 
 TEST(WalkScript, PressesEndAtTheFirstQuit) {

@@ -45,7 +45,7 @@ class Directory {
 
 // What is compressed of a row: the highest bytes of all floats, then the next ones, ..., each as the difference to the
 // same byte of the pixel before.
-void append_differences(const float* row, std::size_t width, std::string& to) {
+void append_planes_of_differences(const float* row, std::size_t width, std::string& to) {
     const std::size_t count = width * 3, begin = to.size();
     to.resize(begin + count * sizeof(float));
     char* bytes = to.data() + begin;
@@ -74,7 +74,7 @@ void write_tiff(WholeFile& file, const FloatRows& picture, Saving saving) {
         std::string differences;
         differences.reserve(rgb.size() * sizeof(float));
         for (const float* row = rgb.data(); row != rgb.data() + rgb.size(); row += width * 3)
-            append_differences(row, width, differences);
+            append_planes_of_differences(row, width, differences);
         bytes = zlib_compressed(differences, 3);
     });
 
