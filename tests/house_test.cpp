@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <regex>
 #include <set>
@@ -97,6 +98,26 @@ TEST(House, AFileIsOneIdeaOfSomeFourHundredLinesAtMost) {
     for (const fs::path& file : sources()) {
         const std::size_t most = name_of(file).starts_with("tests/") ? 500 : 420;
         EXPECT_LE(lines_of(file).size(), most) << name_of(file);
+    }
+}
+
+// Where RAYWALK_UNITY compiles them together, a call could find the other's function.
+TEST(House, SourcesOfATargetGiveTheirFunctionsDifferentNames) {
+    const std::regex target(R"((?:add_library|raywalk_tests)\([^)]*\))"), source(R"([a-z0-9_/]+\.cpp)"),
+        function(R"(^[A-Za-z][^=(]*[ &*]([a-z0-9_]+)\()");
+    for (const fs::path folder : {"tracer", "app", "tests", "tests/window"}) {
+        const std::string text = text_of(root / folder / "CMakeLists.txt");
+        for (std::sregex_iterator found(text.begin(), text.end(), target), end; found != end; ++found) {
+            const std::string list = found->str();
+            std::map<std::string, std::string> source_of;
+            for (std::sregex_iterator word(list.begin(), list.end(), source); word != end; ++word)
+                for (const std::string& line : lines_of(root / folder / word->str())) {
+                    std::smatch match;
+                    if (!std::regex_search(line, match, function)) continue;
+                    const std::string& first = source_of.try_emplace(match[1], word->str()).first->second;
+                    EXPECT_EQ(first, word->str()) << "both give a function the name " << match[1];
+                }
+        }
     }
 }
 
