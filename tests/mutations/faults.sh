@@ -73,10 +73,10 @@ fault "of equal hits the last counts" tracer/kernels/ray_shapes.h \
     'distance[l] == hit.t && id >= hit.id' 'distance[l] == hit.t && id == hit.id' \
     traversal_tests 'TraversalBits.*'
 fault "a beam is not as wide as its rays" tracer/kernels/beam.h \
-    'beam.u1 = reduce_max(u1)' 'beam.u1 = reduce_min(u1)' \
+    'beam.u1 = -wider(least[1])' 'beam.u1 = wider(least[0])' \
     traversal_tests '*FindsTheHitsThatALoop*'
 fault "beams end at the nearest hit of their rays" tracer/kernels/beam.h \
-    'max(depth, farthest), farthest)' 'min(depth, Real(9.0f)), farthest)' \
+    'reduce_max(depth, beam.group_depth)' 'reduce_min(depth, beam.group_depth)' \
     traversal_tests '*FindsTheHitsThatALoop*'
 fault "rays of a stream are lost with the last group" tracer/kernels/stream_traversal.h \
     'g < beam_rays / lanes; ++g)' 'g < beam_rays / lanes - 1; ++g)' \
