@@ -7,6 +7,7 @@
 #include <cstring>
 #include <iterator>
 
+#include "tracer/description/blank.h"
 #include "tracer/description/decimal.h"
 #include "tracer/ground/error.h"
 
@@ -22,8 +23,6 @@ constexpr std::string_view ignored_words[] = {
     "ctech", "stech",    "shadow_obj", "cdp",    "cdc",    "res",  "bsp",  "bzp",
 };
 
-// Most characters that are asked are above the blanks: one comparison tells.
-constexpr bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && (c == ' ' || c == '\t' || c == '\r'); }
 constexpr bool ends_word(char c) { return static_cast<unsigned char>(c) <= ' ' && (is_blank(c) || c == '\n'); }
 
 class ChunkParser {

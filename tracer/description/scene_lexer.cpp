@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "tracer/description/blank.h"
 #include "tracer/ground/utf8.h"
 
 namespace raywalk {
 
 namespace {
-
-constexpr bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 // Splits line.text into line.words.
 void split(SceneLine& line) {
@@ -17,7 +16,7 @@ void split(SceneLine& line) {
     const std::string_view text = line.text;
     std::size_t i = 0;
     while (line.words.size() < most_words) {
-        while (i < text.size() && is_space(text[i])) ++i;
+        while (i < text.size() && is_blank(text[i])) ++i;
         if (i == text.size()) return;
         const std::size_t begin = i;
         if (text[i] == '"') {
@@ -27,7 +26,7 @@ void split(SceneLine& line) {
             i = line.open_quote ? end : end + 1;
             line.words.push_back({text.substr(begin + 1, end - begin - 1), begin + 1, i - begin, true});
         } else {
-            while (i < text.size() && !is_space(text[i])) ++i;
+            while (i < text.size() && !is_blank(text[i])) ++i;
             line.words.push_back({text.substr(begin, i - begin), begin + 1, i - begin, false});
         }
     }
@@ -45,7 +44,7 @@ bool SceneLexer::next(SceneLine& line) {
         rest_.remove_prefix(std::min(end + 1, rest_.size()));
         line.number = ++number_;
         if (line.number == 1 && line.text.starts_with(byte_order_mark)) line.text.remove_prefix(byte_order_mark.size());
-        while (!line.text.empty() && is_space(line.text.back())) line.text.remove_suffix(1);
+        while (!line.text.empty() && is_blank(line.text.back())) line.text.remove_suffix(1);
         const std::size_t first = line.text.find_first_not_of(" \t\r");
         if (first == std::string_view::npos || line.text[first] == '#') continue;
         split(line);

@@ -271,17 +271,30 @@ HWY_INLINE bool any(Mask a) { return bits(a) != 0; }
 HWY_INLINE bool none(Mask a) { return bits(a) == 0; }
 HWY_INLINE bool all(Mask a) { return bits(a) == 0xffffu; }
 
+struct Least {
+    template <class V>
+    HWY_INLINE V operator()(V a, V b) const {
+        return hn::Min(a, b);
+    }
+};
+struct Most {
+    template <class V>
+    HWY_INLINE V operator()(V a, V b) const {
+        return hn::Max(a, b);
+    }
+};
+
+template <class Combine>
+HWY_INLINE RealRegister one_register(Real a, Combine combine) {
+    RealRegister r = a.v[0];
+    for (int i = 1; i < registers; ++i) r = combine(r, a.v[i]);
+    return r;
+}
+
 // Over all sixteen lanes; no lane may be NaN.
-HWY_INLINE float reduce_min(Real a) {
-    RealRegister r = a.v[0];
-    for (int i = 1; i < registers; ++i) r = hn::Min(r, a.v[i]);
-    return hn::GetLane(hn::MinOfLanes(RealTag(), r));
-}
-HWY_INLINE float reduce_max(Real a) {
-    RealRegister r = a.v[0];
-    for (int i = 1; i < registers; ++i) r = hn::Max(r, a.v[i]);
-    return hn::GetLane(hn::MaxOfLanes(RealTag(), r));
-}
+HWY_INLINE float reduce_min(Real a) { return hn::GetLane(hn::MinOfLanes(RealTag(), one_register(a, Least()))); }
+HWY_INLINE float reduce_max(Real a) { return hn::GetLane(hn::MaxOfLanes(RealTag(), one_register(a, Most()))); }
+
 #if HWY_TARGET != HWY_SCALAR
 // Halves combined until four lanes are left.
 template <class Tag, class Combine>
@@ -298,32 +311,25 @@ HWY_INLINE void store_folded(Tag tag, hn::Vec<Tag> a, float (&four)[4], Combine 
 template <class Combine>
 HWY_INLINE void reduce_four(const Real (&values)[4], float (&four)[4], Combine combine) {
     RealRegister r[4];
-    for (int n = 0; n < 4; ++n) {
-        r[n] = values[n].v[0];
-        for (int i = 1; i < registers; ++i) r[n] = combine(r[n], values[n].v[i]);
-    }
+    for (int n = 0; n < 4; ++n) r[n] = one_register(values[n], combine);
 #if HWY_TARGET == HWY_SCALAR
     for (int n = 0; n < 4; ++n) four[n] = hn::GetLane(r[n]);
 #else
     // In blocks of four lanes: 0 1 0 1 and 2 3 2 3, then 0 1 2 3; at last block by block.
     const RealTag tag;
     const hn::Repartition<double, RealTag> pairs;
-    const auto x =
-        hn::BitCast(pairs, combine(hn::InterleaveLower(tag, r[0], r[1]), hn::InterleaveUpper(tag, r[0], r[1])));
-    const auto y =
-        hn::BitCast(pairs, combine(hn::InterleaveLower(tag, r[2], r[3]), hn::InterleaveUpper(tag, r[2], r[3])));
-    store_folded(
-        tag,
-        combine(hn::BitCast(tag, hn::InterleaveLower(pairs, x, y)), hn::BitCast(tag, hn::InterleaveUpper(pairs, x, y))),
-        four, combine);
+    const auto halved = [&](RealRegister a, RealRegister b) HWY_ATTR {
+        return hn::BitCast(pairs, combine(hn::InterleaveLower(tag, a, b), hn::InterleaveUpper(tag, a, b)));
+    };
+    const auto x = halved(r[0], r[1]), y = halved(r[2], r[3]);
+    const auto lower = hn::BitCast(tag, hn::InterleaveLower(pairs, x, y));
+    const auto upper = hn::BitCast(tag, hn::InterleaveUpper(pairs, x, y));
+    store_folded(tag, combine(lower, upper), four, combine);
 #endif
 }
-HWY_INLINE void reduce_min(const Real (&values)[4], float (&four)[4]) {
-    reduce_four(values, four, [](auto a, auto b) HWY_ATTR { return hn::Min(a, b); });
-}
-HWY_INLINE void reduce_max(const Real (&values)[4], float (&four)[4]) {
-    reduce_four(values, four, [](auto a, auto b) HWY_ATTR { return hn::Max(a, b); });
-}
+HWY_INLINE void reduce_min(const Real (&values)[4], float (&four)[4]) { reduce_four(values, four, Least()); }
+HWY_INLINE void reduce_max(const Real (&values)[4], float (&four)[4]) { reduce_four(values, four, Most()); }
+
 HWY_INLINE float lane(Real a, int i) {
     HWY_ALIGN float values[lanes];
     store(a, values);
