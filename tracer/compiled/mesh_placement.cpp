@@ -6,7 +6,7 @@
 
 namespace raywalk {
 
-float limited(double coordinate) { return static_cast<float>(std::clamp(coordinate, -largest_length, largest_length)); }
+float limited(double x) { return static_cast<float>(std::clamp(x, -largest_length, largest_length)); }
 glm::vec3 limited(const glm::dvec3& point) { return {limited(point.x), limited(point.y), limited(point.z)}; }
 
 namespace {

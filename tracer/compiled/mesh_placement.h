@@ -15,7 +15,7 @@ namespace raywalk {
 inline constexpr std::size_t worth_threads = 4096;
 
 // Brought to at most `largest_length` in magnitude: what is farther away could not be seen anyway.
-float limited(double coordinate);
+float limited(double x);
 glm::vec3 limited(const glm::dvec3& point);
 
 // Why the mesh cannot be placed ("it has no faces"), or nothing.
