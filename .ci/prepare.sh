@@ -6,7 +6,7 @@ build_packages=(g++ cmake ninja-build pkg-config libvulkan-dev libglfw3-dev libg
 test_packages=(libgtest-dev libgmock-dev libx11-dev libxtst-dev vulkan-validationlayers xvfb xauth xdotool imagemagick
     openimageio-tools)
 bench_packages=(libembree-dev libtinyobjloader-dev libassimp-dev)
-full_test_packages=(clang libomp-dev clang-format clang-tidy gcovr)
+full_test_packages=(clang llvm libomp-dev clang-format clang-tidy gcovr)
 
 say() { printf '%s\n' "$*" >&2; }
 

@@ -44,7 +44,7 @@ struct Heading {
 constexpr Heading headings[] = {
     {OptionGroup::mode, "what to do"},
     {OptionGroup::picture, "the picture"},
-    {OptionGroup::walk, "walking by script"},
+    {OptionGroup::walking, "walking by script"},
     {OptionGroup::output, "messages"},
     {OptionGroup::speed, "speed"},
     {OptionGroup::limits, "limits, against hostile scenes"},

@@ -110,11 +110,11 @@ const OptionSpec table[] = {
     {"--seed", "", "N", picture, "seed of every random choice (default 0)",
      [](Line& line, Value value) { line.options.seed = integer<std::uint32_t>("--seed", value, 0, ~0u); }},
 
-    {"--keys", "", "SCRIPT", walk,
+    {"--keys", "", "SCRIPT", walking,
      "walk steps to press first: '12w 3R t' is 12 steps forward, 3 turns to the right, "
      "the other projection",
      [](Line& line, Value value) { line.options.keys = parse_walk_script(value, "--keys"); }},
-    {"--frames", "", "PATTERN", walk, "with --capture: also write the frame after every key, as walk-%04d.png does",
+    {"--frames", "", "PATTERN", walking, "with --capture: also write the frame after every key, as walk-%04d.png does",
      [](Line& line, Value value) { line.options.frames = value; }},
 
     {"--threads", "", "N", speed, "threads (default: every core this process may use)",

@@ -8,7 +8,7 @@
 
 namespace raywalk {
 
-enum class OptionGroup { mode, picture, walk, speed, limits, output };
+enum class OptionGroup { mode, picture, walking, speed, limits, output };
 
 // What the command line alone decides, until it is read whole.
 struct CommandLine {

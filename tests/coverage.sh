@@ -8,8 +8,8 @@ cd "$(dirname "$0")/.."
 build=$1 least=${2:-95}
 # A thread may lose another's count of a line, and gcovr wonders at what then adds up to less than none; that a line ran
 # is not lost. Counters without such losses make the suite twice as slow.
-gcovr --root . --filter tracer/ --gcov-ignore-parse-errors -j "$(nproc)" --csv "$build/coverage.csv" "$build" \
-    >"$build/coverage.log" 2>&1 || { cat "$build/coverage.log" >&2; exit 1; }
+gcovr --root . --filter tracer/ --gcov-executable "llvm-cov gcov" --gcov-ignore-parse-errors -j "$(nproc)" \
+    --csv "$build/coverage.csv" "$build" >"$build/coverage.log" 2>&1 || { cat "$build/coverage.log" >&2; exit 1; }
 awk -F, -v least="$least" '
     NR == 1 { next }
     {

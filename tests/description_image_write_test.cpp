@@ -79,8 +79,9 @@ TEST(ImageWriting, PngHoldsEveryByteUrgentOrNot) {
     for (const auto& [width, height] : {std::pair{1, 1}, {2, 200}, {301, 130}})
         for (const Saving saving : savings) {
             std::vector<std::uint8_t> rgb;
-            rgb.reserve(std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-            for (int i = 0; i < width * height * 3; ++i)
+            const auto bytes = static_cast<unsigned>(width * height * 3);
+            rgb.reserve(bytes);
+            for (unsigned i = 0; i < bytes; ++i)
                 rgb.push_back(static_cast<std::uint8_t>(i % 7 < 3 ? i * i : i / 400));
             write_image(folder.path() / "a.png", width, height, rgb, saving);
             const Image image = read_image(folder.path() / "a.png", {}, {});
