@@ -81,8 +81,7 @@ TEST(ImageWriting, PngHoldsEveryByteUrgentOrNot) {
             std::vector<std::uint8_t> rgb;
             const auto bytes = static_cast<unsigned>(width * height * 3);
             rgb.reserve(bytes);
-            for (unsigned i = 0; i < bytes; ++i)
-                rgb.push_back(static_cast<std::uint8_t>(i % 7 < 3 ? i * i : i / 400));
+            for (unsigned i = 0; i < bytes; ++i) rgb.push_back(static_cast<std::uint8_t>(i % 7 < 3 ? i * i : i / 400));
             write_image(folder.path() / "a.png", width, height, rgb, saving);
             const Image image = read_image(folder.path() / "a.png", {}, {});
             ASSERT_EQ(image.texels.size() * 3, rgb.size());

@@ -7,7 +7,9 @@
 #include <limits>
 #include <random>
 
+#include "hwy/targets.h"
 #include "tests/kernels_shading_scene.h"
+#include "tracer/kernels/instruction_sets.h"
 
 namespace raywalk {
 namespace {
@@ -106,6 +108,11 @@ TEST(Kernels, AreFoundByName) {
     EXPECT_EQ(select_kernels("mmx"), nullptr);
     for (std::size_t i = 1; i < available_kernels().size(); ++i)
         EXPECT_GT(available_kernels()[i - 1]->lanes, available_kernels()[i]->lanes);
+}
+
+TEST(Kernels, AreThoseThatHighwayFindsRunnable) {
+    constexpr std::int64_t ours = HWY_SSE4 | HWY_AVX2 | HWY_AVX3;
+    EXPECT_EQ(runnable_targets(), hwy::SupportedTargets() & ours);
 }
 
 std::uint32_t display_word(const FilmTile& tile, int lane, float scale) {

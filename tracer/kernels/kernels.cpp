@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "tracer/kernels/instruction_sets.h"
 #include "tracer/kernels/tile_scratch.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -119,7 +120,7 @@ void TileScratchDeleter::operator()(TileScratch* scratch) const { delete scratch
 namespace {
 
 std::vector<const Kernels*> runnable_kernels() {
-    const std::int64_t targets = hwy::SupportedTargets();
+    const std::int64_t targets = runnable_targets();
     std::vector<const Kernels*> kernels;
     const auto add = [&](std::int64_t target, const Kernels& candidate) {
         if ((targets & target) != 0) kernels.push_back(&candidate);
