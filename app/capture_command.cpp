@@ -61,9 +61,8 @@ class Capture {
 
 void Capture::save(const std::filesystem::path& file) {
     const Film& film = renderer_.film();
-    const Saving saving = interrupted() ? Saving::urgent : Saving::unhurried;
     if (is_float_extension(file)) {
-        write_image(file, radiance_rows(film), saving);
+        write_image(file, radiance_rows(film), saving_now());
         return;
     }
     publish_film(presenter_.exchange(), presenter_.preferred_content(), {.samples = renderer_.samples()}, film,
@@ -73,7 +72,7 @@ void Capture::save(const std::filesystem::path& file) {
     rgb.reserve(words.size() * 3);
     for (const std::uint32_t word : words)
         for (const int shift : {16, 8, 0}) rgb.push_back(static_cast<std::uint8_t>(word >> shift));
-    write_image(file, film.width, film.height, rgb, saving);
+    write_image(file, film.width, film.height, rgb, saving_now());
 }
 
 int capture(const Options& options, const LoadedScene& loaded) {

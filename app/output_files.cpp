@@ -2,6 +2,7 @@
 
 #include <system_error>
 
+#include "app/interrupts.h"
 #include "tracer/compiled/scene_files.h"
 #include "tracer/ground/error.h"
 #include "tracer/ground/whole_file.h"
@@ -58,5 +59,7 @@ void require_inputs_kept(const Options& options, const Scene& scene) {
     if (has_output(options)) require_no_input(options.output, scene);
     if (has_statistics(options)) require_no_input(*options.stats, scene);
 }
+
+Saving saving_now() { return interrupted() ? Saving::urgent : Saving::unhurried; }
 
 }  // namespace raywalk

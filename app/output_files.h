@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/options.h"
+#include "tracer/description/image.h"
 #include "tracer/description/scene.h"
 
 namespace raywalk {
@@ -12,5 +13,8 @@ void require_writable_outputs(const Options& options);
 // Throws UsageError where writing would destroy what the scene is made of.
 void require_no_input(const std::filesystem::path& output, const Scene& scene);
 void require_inputs_kept(const Options& options, const Scene& scene);
+
+// How a picture is to be saved now: after an interrupt as fast as can be.
+Saving saving_now();
 
 }  // namespace raywalk

@@ -1,6 +1,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/interrupts.h"
+#include "app/output_files.h"
 #include "app/progress.h"
 #include "app/statistics.h"
 #include "tracer/description/image.h"
@@ -28,14 +29,14 @@ void render(Renderer& renderer, std::uint32_t samples, bool quiet) {
 
 void save(const Renderer& renderer, const Options& options) {
     const Film& film = renderer.film();
-    const Saving saving = interrupted() ? Saving::urgent : Saving::unhurried;
     if (is_float_extension(options.output)) {
-        write_image(options.output, radiance_rows(film), saving);
+        write_image(options.output, radiance_rows(film), saving_now());
         return;
     }
     const Exposure exposure = options.exposure.value_or(Exposure{});
     const float factor = exposure.value ? *exposure.value : normalizing_exposure(film);
-    write_image(options.output, film.width, film.height, display_values(film, renderer.kernels(), factor), saving);
+    write_image(options.output, film.width, film.height, display_values(film, renderer.kernels(), factor),
+                saving_now());
 }
 
 // Of all the samples asked for, how many are there: 0..1.
