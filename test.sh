@@ -2,7 +2,7 @@
 # ./test.sh [--full]: builds Raywalk and its tests, installing what is missing, and runs them.
 #   (nothing)   the quick suite: a few minutes on two cores, the build not counted
 #   --full      everything: warnings as errors, the long tests, format, lint, the suite under sanitizers, coverage,
-#               deliberate faults, fuzzing; about half an hour on two cores
+#               deliberate faults, fuzzing; about 25 minutes on two cores
 # Ends with one line per stage and their count; the exit code is 0 where nothing failed.
 set -uo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
