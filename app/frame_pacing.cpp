@@ -8,7 +8,7 @@ namespace raywalk {
 namespace {
 
 // Divisors of width and height, about sqrt(2) apart: a step halves or doubles the work.
-constexpr std::array divisors = {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 16.0};
+constexpr std::array divisors = {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 16.0, 22.0};
 constexpr int smallest_side = 8;  // pixels
 constexpr double spare = 0.8;     // of the frame's time: a larger size must fit in this part of it
 constexpr int spare_frames = 4;   // so many frames in a row must have had the time

@@ -9,8 +9,9 @@ namespace raywalk {
 // only after several frames had time to spare, so that the picture does not hop between two sizes.
 class FramePacing {
   public:
-    // `frame_seconds`: what a frame of the moving camera should take at most.
-    explicit FramePacing(double frame_seconds = 1.0 / 36) : frame_seconds_(frame_seconds) {}
+    // `frame_seconds`: what a frame of the moving camera should take at most. Less than a sixtieth of a second, since a
+    // driver in software takes its part of the same cores' time to show it.
+    explicit FramePacing(double frame_seconds = 1.0 / 75) : frame_seconds_(frame_seconds) {}
 
     // The size to trace for a window of this size: the full one where that takes no longer than a frame should.
     [[nodiscard]] glm::ivec2 size(glm::ivec2 window) const;

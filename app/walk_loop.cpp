@@ -101,7 +101,7 @@ void Walk::show_frame(double now) {
     const Presenter::Outcome outcome = presenter.present();
     const double shown = Window::now();
     present_again = outcome == Presenter::Outcome::again;
-    next_present = now + present_interval;
+    next_present = std::max(next_present + present_interval, now);  // a frame that came late does not delay the next
     if (outcome == Presenter::Outcome::hidden) return;
     if (record.present_seconds.empty()) presenter.warm_up();
     record.present_seconds.push_back(shown - now);
