@@ -10,7 +10,6 @@ scene=$root/scenes/cornell_box.scene
 if [[ $# -gt 0 && $1 != -* ]]; then
     scene=$1
     shift
-    [[ ! -e $scene && -f $root/scenes/${scene%.scene}.scene ]] && scene=$root/scenes/${scene%.scene}.scene
 fi
 
 vulkan_driver=$(vulkan_driver_package)
@@ -19,6 +18,10 @@ is_configured release || configure release RAYWALK_TESTS=OFF
 build release raywalk scene_files
 provide_runtime_folder
 raywalk=$root/build/release/raywalk
+
+# Only now: some scenes are made by the build.
+named=$root/scenes/${scene%.scene}.scene
+if [[ ! -e $scene && -f $named ]]; then scene=$named; fi
 
 given() {  # given OPTION: whether the command line holds it
     local word
