@@ -1,4 +1,4 @@
-// The files that a run writes, looked at before the work rather than after it.
+// The files that a run writes: whether they can be, looked at before the work rather than after it, and how.
 #pragma once
 
 #include "app/options.h"
