@@ -8,75 +8,46 @@
 #include <set>
 #include <vector>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tests/kernels_shading_math_test.cpp"
-#include "hwy/foreach_target.h"
-
-#include "tracer/ground/random.h"
-#include "tracer/kernels/camera_rays.h"
-#include "tracer/kernels/math.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace raywalk {
-namespace HWY_NAMESPACE {
-
-// Sixteen at a time; the arrays are whole sixteens.
-void exp_of(const float* x, float* y, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += lanes) store_unaligned(exp(load_unaligned(x + i)), y + i);
-}
-void asin_of(const float* x, float* y, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += lanes) store_unaligned(asin(load_unaligned(x + i)), y + i);
-}
-void atan2_of(const float* y, const float* x, float* a, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += lanes)
-        store_unaligned(atan2(load_unaligned(y + i), load_unaligned(x + i)), a + i);
-}
-void power_of(const float* x, std::int32_t exponent, float* y, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += lanes) store_unaligned(power(load_unaligned(x + i), Int(exponent)), y + i);
-}
-// Samples `first` to `first + 15` of one pixel.
-void samples_of(std::int32_t x, std::int32_t y, std::uint32_t seed, std::uint32_t first, bool aperture, float* u,
-                float* v) {
-    const Int key = pixel_key(Int(x), Int(y), seed);
-    for (std::uint32_t i = 0; i < 16; ++i) {
-        const Point2 p = aperture ? aperture_sample(key, first + i) : pixel_sample(key, first + i);
-        u[i] = lane(p.x, 0);
-        v[i] = lane(p.y, 0);
-    }
-}
-void disk_of(const float* u, const float* v, float* x, float* y) {
-    const Point2 p = square_to_disk({load_unaligned(u), load_unaligned(v)});
-    store_unaligned(p.x, x);
-    store_unaligned(p.y, y);
-}
-
-}  // namespace HWY_NAMESPACE
-}  // namespace raywalk
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
+#include "tests/kernels_shading_math_lanes.h"
+#include "tracer/kernels/instruction_sets.h"
 
 namespace raywalk {
+
+// Each is defined by kernels_shading_math_lanes.cpp, compiled for its instruction set.
+namespace N_AVX3 {
+extern const MathInLanes math;
+}
+namespace N_AVX2 {
+extern const MathInLanes math;
+}
+namespace N_SSE4 {
+extern const MathInLanes math;
+}
+namespace N_SCALAR {
+extern const MathInLanes math;
+}
+
 namespace {
-
-HWY_EXPORT(exp_of);
-HWY_EXPORT(asin_of);
-HWY_EXPORT(atan2_of);
-HWY_EXPORT(power_of);
-HWY_EXPORT(samples_of);
-HWY_EXPORT(disk_of);
 
 // Runs `check` once for each instruction set that this machine has.
 template <class Check>
 void on_every_target(const Check& check) {
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        SCOPED_TRACE(hwy::TargetName(target));
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        check();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    const std::int64_t targets = runnable_targets();
+    const auto run = [&](std::int64_t target, const char* name, const MathInLanes& math) {
+        if ((targets & target) != target) return;
+        SCOPED_TRACE(name);
+        check(math);
+    };
+#ifdef RAYWALK_AVX512
+    run(HWY_AVX3, "avx512", N_AVX3::math);
+#endif
+#ifdef RAYWALK_AVX2
+    run(HWY_AVX2, "avx2", N_AVX2::math);
+#endif
+#ifdef RAYWALK_SSE4
+    run(HWY_SSE4, "sse4", N_SSE4::math);
+#endif
+    run(0, "scalar", N_SCALAR::math);
 }
 
 // n steps from a to b.
@@ -95,17 +66,17 @@ constexpr std::size_t count = 1 << 18;
 TEST(KernelMath, ExpIsWithin3e7OverItsWholeRange) {
     const std::vector<float> x = steps(-87, 88, count);
     std::vector<float> y(count);
-    on_every_target([&] {
-        HWY_DYNAMIC_DISPATCH(exp_of)(x.data(), y.data(), count);
+    on_every_target([&](const MathInLanes& math) {
+        math.exp_of(x.data(), y.data(), count);
         for (std::size_t i = 0; i < count; ++i)
             ASSERT_NEAR(y[i] / std::exp(static_cast<double>(x[i])), 1, 3e-7) << x[i];
     });
 }
 
 TEST(KernelMath, ExpGoesToZeroAndNeverToNan) {
-    on_every_target([&] {
+    on_every_target([&](const MathInLanes& math) {
         float y[16];
-        HWY_DYNAMIC_DISPATCH(exp_of)(awkward, y, 16);
+        math.exp_of(awkward, y, 16);
         for (const float value : y) EXPECT_TRUE(std::isfinite(value));
         EXPECT_EQ(y[9], 0.0f);   // exp(-3e38)
         EXPECT_EQ(y[11], 0.0f);  // exp(-87.4)
@@ -116,11 +87,11 @@ TEST(KernelMath, ExpGoesToZeroAndNeverToNan) {
 TEST(KernelMath, AsinIsWithin4e7OverItsWholeRange) {
     const std::vector<float> x = steps(-1, 1, count);
     std::vector<float> y(count);
-    on_every_target([&] {
-        HWY_DYNAMIC_DISPATCH(asin_of)(x.data(), y.data(), count);
+    on_every_target([&](const MathInLanes& math) {
+        math.asin_of(x.data(), y.data(), count);
         for (std::size_t i = 0; i < count; ++i) ASSERT_NEAR(y[i], std::asin(static_cast<double>(x[i])), 4e-7) << x[i];
         float limited[16];
-        HWY_DYNAMIC_DISPATCH(asin_of)(awkward, limited, 16);
+        math.asin_of(awkward, limited, 16);
         for (const float value : limited) EXPECT_LE(std::abs(value), 1.5707964f);
     });
 }
@@ -133,8 +104,8 @@ TEST(KernelMath, Atan2IsWithin6e7InEveryDirectionAtEveryScale) {
             x[i] = static_cast<float>(scale * std::cos(static_cast<double>(angles[i])));
             y[i] = static_cast<float>(scale * std::sin(static_cast<double>(angles[i])));
         }
-        on_every_target([&] {
-            HWY_DYNAMIC_DISPATCH(atan2_of)(y.data(), x.data(), a.data(), count);
+        on_every_target([&](const MathInLanes& math) {
+            math.atan2_of(y.data(), x.data(), a.data(), count);
             for (std::size_t i = 0; i < count; ++i)
                 ASSERT_NEAR(a[i], std::atan2(static_cast<double>(y[i]), static_cast<double>(x[i])), 6e-7)
                     << y[i] << ", " << x[i];
@@ -143,16 +114,16 @@ TEST(KernelMath, Atan2IsWithin6e7InEveryDirectionAtEveryScale) {
 }
 
 TEST(KernelMath, Atan2OfFiniteNumbersIsNeverNan) {
-    on_every_target([&] {
+    on_every_target([&](const MathInLanes& math) {
         for (const float y : awkward) {
             float ys[16], a[16];
             std::fill(std::begin(ys), std::end(ys), y);
-            HWY_DYNAMIC_DISPATCH(atan2_of)(ys, awkward, a, 16);
+            math.atan2_of(ys, awkward, a, 16);
             for (const float value : a) EXPECT_LE(std::abs(value), 3.1415928f);
         }
         const float zero[16] = {};
         float a[16];
-        HWY_DYNAMIC_DISPATCH(atan2_of)(zero, zero, a, 16);
+        math.atan2_of(zero, zero, a, 16);
         EXPECT_EQ(a[0], 0.0f);
     });
 }
@@ -160,9 +131,9 @@ TEST(KernelMath, Atan2OfFiniteNumbersIsNeverNan) {
 TEST(KernelMath, PowerSquaresItsWay) {
     const std::vector<float> x = steps(0, 1, 1 << 12);
     std::vector<float> y(x.size());
-    on_every_target([&] {
+    on_every_target([&](const MathInLanes& math) {
         for (const int n : {0, 1, 2, 5, 7, 64, 100}) {
-            HWY_DYNAMIC_DISPATCH(power_of)(x.data(), n, y.data(), x.size());
+            math.power_of(x.data(), n, y.data(), x.size());
             for (std::size_t i = 0; i < x.size(); ++i) {
                 const double exact = std::pow(static_cast<double>(x[i]), n);
                 ASSERT_NEAR(y[i], exact, 1.3e-7 * n * exact + 1e-37) << x[i] << "^" << n;
@@ -172,9 +143,9 @@ TEST(KernelMath, PowerSquaresItsWay) {
 }
 
 TEST(KernelSamples, FirstLiesInTheMiddleOfThePixel) {
-    on_every_target([&] {
+    on_every_target([&](const MathInLanes& math) {
         float u[16], v[16];
-        HWY_DYNAMIC_DISPATCH(samples_of)(5, 7, 3, 0, false, u, v);
+        math.samples_of(5, 7, 3, 0, false, u, v);
         EXPECT_EQ(u[0], 0.5f);
         EXPECT_EQ(v[0], 0.5f);
     });
@@ -186,7 +157,7 @@ TEST(KernelSamples, AnyStretchCoversThePixelEvenly) {
         for (const std::uint32_t first : {1u, 16u, 1000u, 4'000'000'000u}) {
             std::vector<float> u(256), v(256);
             for (std::uint32_t i = 0; i < 256; i += 16)
-                HWY_DYNAMIC_DISPATCH(samples_of)(100, 30, 1, first + i, aperture, &u[i], &v[i]);
+                N_SCALAR::math.samples_of(100, 30, 1, first + i, aperture, &u[i], &v[i]);
             const int cells = 7;  // 256 = 16^2
             std::set<int> covered;
             for (std::size_t i = 0; i < 256; ++i) {
@@ -201,11 +172,11 @@ TEST(KernelSamples, AnyStretchCoversThePixelEvenly) {
 
 TEST(KernelSamples, AreTheSameBitsOnEveryInstructionSet) {
     std::vector<float> first;
-    on_every_target([&] {
+    on_every_target([&](const MathInLanes& math) {
         std::vector<float> all;
         for (const bool aperture : {false, true}) {
             float u[16], v[16];
-            HWY_DYNAMIC_DISPATCH(samples_of)(16383, 12345, 99, 70'000, aperture, u, v);
+            math.samples_of(16383, 12345, 99, 70'000, aperture, u, v);
             all.insert(all.end(), u, u + 16);
             all.insert(all.end(), v, v + 16);
         }
@@ -216,10 +187,10 @@ TEST(KernelSamples, AreTheSameBitsOnEveryInstructionSet) {
 
 TEST(KernelSamples, DifferByPixelAndBySeed) {
     float u[4][16], v[16];
-    HWY_DYNAMIC_DISPATCH(samples_of)(10, 10, 0, 1, false, u[0], v);
-    HWY_DYNAMIC_DISPATCH(samples_of)(11, 10, 0, 1, false, u[1], v);
-    HWY_DYNAMIC_DISPATCH(samples_of)(10, 11, 0, 1, false, u[2], v);
-    HWY_DYNAMIC_DISPATCH(samples_of)(10, 10, 1, 1, false, u[3], v);
+    N_SCALAR::math.samples_of(10, 10, 0, 1, false, u[0], v);
+    N_SCALAR::math.samples_of(11, 10, 0, 1, false, u[1], v);
+    N_SCALAR::math.samples_of(10, 11, 0, 1, false, u[2], v);
+    N_SCALAR::math.samples_of(10, 10, 1, 1, false, u[3], v);
     for (int a = 0; a < 4; ++a)
         for (int b = 0; b < a; ++b) EXPECT_GT(std::abs(u[a][0] - u[b][0]), 1e-3f);
 }
@@ -230,8 +201,8 @@ TEST(KernelSamples, FillTheApertureEvenly) {
     int inner = 0, quadrants[4] = {};
     for (std::uint32_t i = 0; i < samples; i += 16) {
         float u[16], v[16], x[16], y[16];
-        HWY_DYNAMIC_DISPATCH(samples_of)(3, 4, 5, i, true, u, v);
-        HWY_DYNAMIC_DISPATCH(disk_of)(u, v, x, y);
+        N_SCALAR::math.samples_of(3, 4, 5, i, true, u, v);
+        N_SCALAR::math.disk_of(u, v, x, y);
         for (int k = 0; k < 16; ++k) {
             const float squared = x[k] * x[k] + y[k] * y[k];
             ASSERT_LE(squared, 1.000001f);
@@ -246,7 +217,7 @@ TEST(KernelSamples, FillTheApertureEvenly) {
 TEST(KernelSamples, SquaresCentreIsTheDisksCentre) {
     const float half[16] = {0.5f};
     float x[16], y[16];
-    HWY_DYNAMIC_DISPATCH(disk_of)(half, half, x, y);
+    N_SCALAR::math.disk_of(half, half, x, y);
     EXPECT_EQ(x[0], 0.0f);
     EXPECT_EQ(y[0], 0.0f);
 }
@@ -256,9 +227,9 @@ std::vector<double> chosen(std::uint32_t side, std::uint32_t samples, std::uint3
     std::vector<double> weight(side * side);
     for (std::uint32_t sample = 0; sample < samples; ++sample)
         for (std::uint32_t stratum = 0; stratum < 16; ++stratum) {
-            const HWY_NAMESPACE::StratumCell choice =
-                HWY_NAMESPACE::stratum_cell(side, stratum, sample + 4'000'000'000u, seed);
-            weight.at(choice.cell) += choice.cells / samples;
+            std::uint32_t cell = 0;
+            const float cells = N_SCALAR::math.stratum_cell_of(side, stratum, sample + 4'000'000'000u, seed, cell);
+            weight.at(cell) += cells / samples;
         }
     return weight;
 }
@@ -286,5 +257,3 @@ TEST(KernelSamples, EverySampleOfALightSpreadsOverAllOfIt) {
 
 }  // namespace
 }  // namespace raywalk
-
-#endif  // HWY_ONCE

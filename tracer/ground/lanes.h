@@ -2,15 +2,7 @@
 // AVX2, four SSE4 or sixteen scalars, so that a kernel written once has one structure, and one result, on every
 // instruction set. Lane by lane the operations are IEEE single precision; only `mul_add` and its kin differ (one
 // rounding where the machine fuses: avx2, avx512; two where it does not: scalar, sse4).
-//
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_GROUND_LANES_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_GROUND_LANES_H
-#undef RAYWALK_GROUND_LANES_H
-#else
-#define RAYWALK_GROUND_LANES_H
-#endif
+#pragma once
 
 #include <cstdint>
 
@@ -344,5 +336,3 @@ HWY_INLINE std::int32_t lane(Int a, int i) {
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_GROUND_LANES_H

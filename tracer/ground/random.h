@@ -1,13 +1,6 @@
 // Every random choice: a function of pixel, sample index and seed only, in exact 32-bit arithmetic, so that a picture
-// does not depend on threads, tiles, the order of work or the instruction set. Included once per target by Highway's
-// foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_GROUND_RANDOM_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_GROUND_RANDOM_H
-#undef RAYWALK_GROUND_RANDOM_H
-#else
-#define RAYWALK_GROUND_RANDOM_H
-#endif
+// does not depend on threads, tiles, the order of work or the instruction set.
+#pragma once
 
 #include <cstdint>
 
@@ -89,5 +82,3 @@ inline StratumCell stratum_cell(std::uint32_t side, std::uint32_t stratum, std::
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_GROUND_RANDOM_H

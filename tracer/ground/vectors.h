@@ -1,12 +1,5 @@
 // Sixteen points or directions at once: three `Real`s.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_GROUND_VECTORS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_GROUND_VECTORS_H
-#undef RAYWALK_GROUND_VECTORS_H
-#else
-#define RAYWALK_GROUND_VECTORS_H
-#endif
+#pragma once
 
 #include "tracer/ground/lanes.h"
 
@@ -42,5 +35,3 @@ HWY_INLINE Vec3 normalize(Vec3 a) { return a * (Real(1.0f) / sqrt(dot(a, a))); }
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_GROUND_VECTORS_H

@@ -1,14 +1,7 @@
 // A beam: up to 64 rays of one origin that go roughly one way, traced together. Divided by its component along the
 // beam's major axis k a direction becomes (U, V, 1), so that all rays lie between four planes: a shape outside one of
 // them is nobody's. Beams only ever cull; what a ray hits is reckoned as for a ray alone.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_BEAM_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_BEAM_H
-#undef RAYWALK_KERNELS_BEAM_H
-#else
-#define RAYWALK_KERNELS_BEAM_H
-#endif
+#pragma once
 
 #include <algorithm>
 #include <bit>
@@ -176,5 +169,3 @@ HWY_INLINE void start_beam(float padding, BeamHits* hits, Beam& beam) {
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_BEAM_H

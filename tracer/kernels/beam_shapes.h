@@ -1,13 +1,6 @@
 // A beam against a block of sixteen triangles or spheres: the block is culled in lanes of shapes, what is left is
 // tested in lanes of rays.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_BEAM_SHAPES_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_BEAM_SHAPES_H
-#undef RAYWALK_KERNELS_BEAM_SHAPES_H
-#else
-#define RAYWALK_KERNELS_BEAM_SHAPES_H
-#endif
+#pragma once
 
 #include "tracer/kernels/beam.h"
 
@@ -187,5 +180,3 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std:
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_BEAM_SHAPES_H

@@ -1,12 +1,5 @@
 // A beam through either hierarchy.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_BEAM_TRAVERSAL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_BEAM_TRAVERSAL_H
-#undef RAYWALK_KERNELS_BEAM_TRAVERSAL_H
-#else
-#define RAYWALK_KERNELS_BEAM_TRAVERSAL_H
-#endif
+#pragma once
 
 #include <algorithm>
 
@@ -173,5 +166,3 @@ void traverse_beam(const CompiledScene& scene, const KdTree& tree, Beam& beam) {
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_BEAM_TRAVERSAL_H

@@ -1,12 +1,5 @@
 // Camera rays of one tile (spec 4.1, 4.2), sixteen pixels at a time.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_CAMERA_RAYS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_CAMERA_RAYS_H
-#undef RAYWALK_KERNELS_CAMERA_RAYS_H
-#else
-#define RAYWALK_KERNELS_CAMERA_RAYS_H
-#endif
+#pragma once
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -111,5 +104,3 @@ HWY_INLINE CameraRays camera_rays(const TileCamera& camera, int group, std::uint
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_CAMERA_RAYS_H

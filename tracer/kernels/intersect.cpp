@@ -1,15 +1,12 @@
 // The doors of traversal: planes first, then the hierarchy; beams split until they are narrow.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tracer/kernels/intersect.cpp"
-#include "hwy/foreach_target.h"
-// After foreach_target.h:
+#include "tracer/kernels/intersect.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "tracer/kernels/beam_traversal.h"
-#include "tracer/kernels/intersect.h"
 #include "tracer/kernels/planes.h"
 #include "tracer/kernels/stream_traversal.h"
 

@@ -1,12 +1,5 @@
 // Rays against the compiled scene: the doors of traversal, one set per instruction set.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_INTERSECT_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_INTERSECT_H
-#undef RAYWALK_KERNELS_INTERSECT_H
-#else
-#define RAYWALK_KERNELS_INTERSECT_H
-#endif
+#pragma once
 
 #include <cstdint>
 
@@ -33,5 +26,3 @@ std::uint64_t occluded_scattered(const CompiledScene& scene, const ScatteredRays
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_INTERSECT_H

@@ -6,113 +6,21 @@
 #include "tracer/kernels/instruction_sets.h"
 #include "tracer/kernels/tile_scratch.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tracer/kernels/kernels.cpp"
-#include "hwy/foreach_target.h"
-
-#include "tracer/ground/lanes.h"
-#include "tracer/kernels/intersect.h"
-#include "tracer/kernels/tile.h"
-
-HWY_BEFORE_NAMESPACE();
 namespace raywalk {
-namespace HWY_NAMESPACE {
-namespace {
 
-// Which rays of the block are not left out.
-std::uint64_t taking_part(const ScatteredRays& rays) {
-    std::uint64_t active = 0;
-    for (int g = 0; g < beam_rays / lanes; ++g)
-        active |= rays_of(bits(load(rays.t_max + g * lanes) > load(rays.t_min + g * lanes)), g);
-    return active;
-}
-
-// The same rays, which have the origin of `origin`'s ray 0 in common.
-void copy_to_beam(const ScatteredRays& rays, const ScatteredRays& origin, BeamRays& beam) {
-    for (int at = 0; at < beam_rays; at += lanes) {
-        for (int axis = 0; axis < 3; ++axis) store(load(rays.direction[axis] + at), beam.direction[axis] + at);
-        store(load(rays.t_min + at), beam.t_min + at);
-        store(load(rays.t_max + at), beam.t_max + at);
-    }
-    for (int axis = 0; axis < 3; ++axis) beam.origin[axis] = origin.origin[axis][0];
-}
-
-// Asks `trace` for the hits of every block with rays that take part.
-template <class Trace>
-void trace_blocks(const RayBlocks& rays, HitBlocks& hits, Trace trace) {
-    const std::vector<ScatteredRays>& blocks = rays.blocks();
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-        BeamHits& found = hits.blocks()[b];
-        fetch_ahead(rays, hits, b);
-        if (const std::uint64_t active = taking_part(blocks[b]); active != 0)
-            trace(blocks[b], active, found);
-        else
-            std::fill_n(found.id, beam_rays, -1);
-    }
-}
-
-void note_blocked(std::uint64_t blocked, BeamHits& hits) {
-    for (int g = 0; g < beam_rays / lanes; ++g)
-        store(select(mask_of_bits(lanes_of(blocked, g)), Int(0), Int(-1)), hits.id + g * lanes);
-}
-
-void intersect_blocks(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits) {
-    trace_blocks(rays, hits, [&](const ScatteredRays& some, std::uint64_t active, BeamHits& found) {
-        intersect_scattered(scene, some, active, found);
-    });
-}
-
-void intersect_blocks_as_beams(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits) {
-    BeamRays beam;
-    trace_blocks(rays, hits, [&](const ScatteredRays& some, std::uint64_t active, BeamHits& found) {
-        copy_to_beam(some, rays.blocks().front(), beam);
-        intersect_beam(scene, beam, active, found);
-    });
-}
-
-void occlude_blocks(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits) {
-    trace_blocks(rays, hits, [&](const ScatteredRays& some, std::uint64_t active, BeamHits& found) {
-        note_blocked(occluded_scattered(scene, some, active), found);
-    });
-}
-
-void occlude_blocks_as_beams(const CompiledScene& scene, const RayBlocks& rays, HitBlocks& hits) {
-    BeamRays beam;
-    trace_blocks(rays, hits, [&](const ScatteredRays& some, std::uint64_t active, BeamHits& found) {
-        copy_to_beam(some, rays.blocks().front(), beam);
-        note_blocked(occluded_beam(scene, beam, active, true), found);
-    });
-}
-
-}  // namespace
-
+// Each is defined by kernel_table.cpp, compiled for its instruction set.
+namespace N_AVX3 {
 extern const Kernels kernels;
-const Kernels kernels = {
-#if HWY_TARGET == HWY_AVX3
-    .name = "avx512",
-#elif HWY_TARGET == HWY_AVX2
-    .name = "avx2",
-#elif HWY_TARGET == HWY_SSE4
-    .name = "sse4",
-#else
-    .name = "scalar",
-#endif
-    .lanes = register_lanes,
-    .trace_tile = trace_tile,
-    .resolve_tile = resolve_tile,
-    .intersect = intersect_blocks,
-    .intersect_beam = intersect_blocks_as_beams,
-    .occluded = occlude_blocks,
-    .occluded_beam = occlude_blocks_as_beams,
-};
-
-}  // namespace HWY_NAMESPACE
-}  // namespace raywalk
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-
-namespace raywalk {
+}
+namespace N_AVX2 {
+extern const Kernels kernels;
+}
+namespace N_SSE4 {
+extern const Kernels kernels;
+}
+namespace N_SCALAR {
+extern const Kernels kernels;
+}
 
 TileScratchPointer make_tile_scratch() { return TileScratchPointer(new TileScratch()); }
 void TileScratchDeleter::operator()(TileScratch* scratch) const { delete scratch; }
@@ -125,13 +33,13 @@ std::vector<const Kernels*> runnable_kernels() {
     const auto add = [&](std::int64_t target, const Kernels& candidate) {
         if ((targets & target) != 0) kernels.push_back(&candidate);
     };
-#if HWY_TARGETS & HWY_AVX3
+#ifdef RAYWALK_AVX512
     add(HWY_AVX3, N_AVX3::kernels);
 #endif
-#if HWY_TARGETS & HWY_AVX2
+#ifdef RAYWALK_AVX2
     add(HWY_AVX2, N_AVX2::kernels);
 #endif
-#if HWY_TARGETS & HWY_SSE4
+#ifdef RAYWALK_SSE4
     add(HWY_SSE4, N_SSE4::kernels);
 #endif
     kernels.push_back(&N_SCALAR::kernels);
@@ -154,5 +62,3 @@ const Kernels* select_kernels(std::optional<std::string_view> name) {
 }
 
 }  // namespace raywalk
-
-#endif  // HWY_ONCE

@@ -1,13 +1,6 @@
 // Elementary functions in lanes. Cephes' single-precision polynomials (Moshier, 1989) without its branches. Error
-// bounds are those that the tests hold them to; no finite argument gives a NaN. Included once per target by Highway's
-// foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_MATH_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_MATH_H
-#undef RAYWALK_KERNELS_MATH_H
-#else
-#define RAYWALK_KERNELS_MATH_H
-#endif
+// bounds are those that the tests hold them to; no finite argument gives a NaN.
+#pragma once
 
 #include "tracer/ground/lanes.h"
 
@@ -80,5 +73,3 @@ HWY_INLINE Real atan2(Real y, Real x) {
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_MATH_H

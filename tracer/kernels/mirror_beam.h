@@ -1,12 +1,5 @@
 // Camera rays reflected by a planar mirror are rays of one origin again, the eye's mirror image: they go as a beam.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_MIRROR_BEAM_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_MIRROR_BEAM_H
-#undef RAYWALK_KERNELS_MIRROR_BEAM_H
-#else
-#define RAYWALK_KERNELS_MIRROR_BEAM_H
-#endif
+#pragma once
 
 #include <bit>
 #include <cmath>
@@ -116,5 +109,3 @@ inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float 
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_MIRROR_BEAM_H

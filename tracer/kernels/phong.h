@@ -1,12 +1,5 @@
 // Light that hits receive from the lights they see (spec 4.4): 64 hits at a time, one shadow beam per point of light.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_PHONG_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_PHONG_H
-#undef RAYWALK_KERNELS_PHONG_H
-#else
-#define RAYWALK_KERNELS_PHONG_H
-#endif
+#pragma once
 
 #include <bit>
 #include <cstdint>
@@ -167,5 +160,3 @@ inline void light_hits(const CompiledScene& scene, const SampleSettings& setting
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_PHONG_H

@@ -1,12 +1,5 @@
 // Infinite planes stand outside the hierarchies: each is tested against every ray.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_PLANES_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_PLANES_H
-#undef RAYWALK_KERNELS_PLANES_H
-#else
-#define RAYWALK_KERNELS_PLANES_H
-#endif
+#pragma once
 
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/ground/vectors.h"
@@ -33,5 +26,3 @@ HWY_INLINE void nearest_planes(const CompiledScene& scene, Vec3 origin, Vec3 dir
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_PLANES_H

@@ -1,13 +1,6 @@
 // One ray against sixteen boxes, triangles or spheres at a time. Hits at equal distance go to the lower shape id, so
-// that it does not matter in which order shapes are tested, and both hierarchies give the same hit. Included once per
-// target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_RAY_SHAPES_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_RAY_SHAPES_H
-#undef RAYWALK_KERNELS_RAY_SHAPES_H
-#else
-#define RAYWALK_KERNELS_RAY_SHAPES_H
-#endif
+// that it does not matter in which order shapes are tested, and both hierarchies give the same hit.
+#pragma once
 
 #include <bit>
 
@@ -172,5 +165,3 @@ HWY_INLINE bool visit_spheres(const SphereBlock* block, std::uint32_t blocks, st
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_RAY_SHAPES_H

@@ -1,12 +1,5 @@
 // Up to 64 rays that share neither origin nor direction, made ready for traversal sixteen at a time.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_RAY_STREAM_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_RAY_STREAM_H
-#undef RAYWALK_KERNELS_RAY_STREAM_H
-#else
-#define RAYWALK_KERNELS_RAY_STREAM_H
-#endif
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -91,5 +84,3 @@ struct SingleRay {
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_RAY_STREAM_H

@@ -1,12 +1,5 @@
 // Fields of records, one record per lane: gathered, or read once where all lanes share the record, as they mostly do.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_RECORDS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_RECORDS_H
-#undef RAYWALK_KERNELS_RECORDS_H
-#else
-#define RAYWALK_KERNELS_RECORDS_H
-#endif
+#pragma once
 
 #include <bit>
 #include <cstddef>
@@ -54,5 +47,3 @@ class Records {
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_RECORDS_H

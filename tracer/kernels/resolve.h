@@ -1,12 +1,5 @@
 // Sums of samples to display values (spec 4.8).
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_RESOLVE_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_RESOLVE_H
-#undef RAYWALK_KERNELS_RESOLVE_H
-#else
-#define RAYWALK_KERNELS_RESOLVE_H
-#endif
+#pragma once
 
 #include <cstdint>
 #include <cstring>
@@ -47,5 +40,3 @@ inline void resolve_pixels(const FilmTile& tile, float scale, int columns, int r
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_RESOLVE_H

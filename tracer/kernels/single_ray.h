@@ -1,12 +1,5 @@
 // One ray, alone, through either hierarchy.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_SINGLE_RAY_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_SINGLE_RAY_H
-#undef RAYWALK_KERNELS_SINGLE_RAY_H
-#else
-#define RAYWALK_KERNELS_SINGLE_RAY_H
-#endif
+#pragma once
 
 #include <algorithm>
 
@@ -97,5 +90,3 @@ bool traverse_single(const CompiledScene& scene, const KdTree& tree, const Singl
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_SINGLE_RAY_H

@@ -1,14 +1,7 @@
 // Up to 64 rays through the BVH together: each node and leaf is read once for all rays that enter it, and their tests,
 // which do not wait for each other, fill the machine. After Barringer and Akenine-Moeller, "Dynamic ray stream
 // traversal" (2014). Which rays go together never shows in what they hit.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_STREAM_TRAVERSAL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_STREAM_TRAVERSAL_H
-#undef RAYWALK_KERNELS_STREAM_TRAVERSAL_H
-#else
-#define RAYWALK_KERNELS_STREAM_TRAVERSAL_H
-#endif
+#pragma once
 
 #include <bit>
 #include <limits>
@@ -195,5 +188,3 @@ std::uint64_t traverse_stream(const CompiledScene& scene, const KdTree& tree, st
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_STREAM_TRAVERSAL_H

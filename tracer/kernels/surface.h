@@ -1,12 +1,5 @@
 // What was hit: position, normals, material and colour of sixteen hits (spec 4.4, 4.6).
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_SURFACE_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_SURFACE_H
-#undef RAYWALK_KERNELS_SURFACE_H
-#else
-#define RAYWALK_KERNELS_SURFACE_H
-#endif
+#pragma once
 
 #include <cstddef>
 
@@ -149,5 +142,3 @@ HWY_INLINE MaterialLanes material_at(const CompiledScene& scene, const HitLanes&
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_SURFACE_H

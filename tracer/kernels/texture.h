@@ -1,12 +1,5 @@
 // Colours of surfaces: pure, grid, image (spec 4.7), sixteen hits at a time.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_TEXTURE_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_TEXTURE_H
-#undef RAYWALK_KERNELS_TEXTURE_H
-#else
-#define RAYWALK_KERNELS_TEXTURE_H
-#endif
+#pragma once
 
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/kernels/records.h"
@@ -48,5 +41,3 @@ HWY_INLINE Vec3 image_color(const CompiledScene& scene, Mask active, Int image, 
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_TEXTURE_H

@@ -1,13 +1,9 @@
 // A tile of 8x8 pixels, traced level by level: camera rays, then all rays that they spawned, and so on. Radiance is a
 // sum of weighted terms, so no recursion is needed; queues hold the rays of the next level.
+#include "tracer/kernels/tile.h"
+
 #include <bit>
 #include <cstdint>
-
-#include "tracer/kernels/tile_scratch.h"
-
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tracer/kernels/tile.cpp"
-#include "hwy/foreach_target.h"
 
 #include "tracer/kernels/camera_rays.h"
 #include "tracer/kernels/intersect.h"
@@ -15,7 +11,7 @@
 #include "tracer/kernels/phong.h"
 #include "tracer/kernels/resolve.h"
 #include "tracer/kernels/surface.h"
-#include "tracer/kernels/tile.h"
+#include "tracer/kernels/tile_scratch.h"
 #include "tracer/kernels/whitted.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,12 +1,5 @@
 // The doors of shading, one set per instruction set: what Kernels::trace_tile and resolve_tile call.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_TILE_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_TILE_H
-#undef RAYWALK_KERNELS_TILE_H
-#else
-#define RAYWALK_KERNELS_TILE_H
-#endif
+#pragma once
 
 #include "tracer/kernels/kernels.h"
 
@@ -22,5 +15,3 @@ void resolve_tile(const FilmTile& tile, float scale, int columns, int rows, std:
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_TILE_H

@@ -1,12 +1,5 @@
 // What a traversal still has to visit, nearest on top.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_TRAVERSAL_STACK_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_TRAVERSAL_STACK_H
-#undef RAYWALK_KERNELS_TRAVERSAL_STACK_H
-#else
-#define RAYWALK_KERNELS_TRAVERSAL_STACK_H
-#endif
+#pragma once
 
 #include <algorithm>
 #include <bit>
@@ -103,5 +96,3 @@ class BvhStack {
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_TRAVERSAL_STACK_H

@@ -1,12 +1,5 @@
 // Mirrored and refracted rays (spec 4.4): hits of one level make the rays of the next.
-// Included once per target by Highway's foreach_target.h, hence the guard that toggles.
-
-#if defined(RAYWALK_KERNELS_WHITTED_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYWALK_KERNELS_WHITTED_H
-#undef RAYWALK_KERNELS_WHITTED_H
-#else
-#define RAYWALK_KERNELS_WHITTED_H
-#endif
+#pragma once
 
 #include <cstdint>
 
@@ -74,5 +67,3 @@ HWY_INLINE void enqueue(const SpawnedRays& rays, const SurfaceLanes& s, Real off
 }  // namespace HWY_NAMESPACE
 }  // namespace raywalk
 HWY_AFTER_NAMESPACE();
-
-#endif  // RAYWALK_KERNELS_WHITTED_H
