@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # ./bench.sh [--quick] [--json FILE] [--mesh FILE]... [--only PART]...: measures Raywalk against Embree, tinyobjloader and
-# assimp, which it installs where they are missing. Markdown goes to stdout and, after a whole run, into README.md between
-# its benchmark marks; the plot of growth goes beside its pictures. Exit code 1: a hit or a picture of ours is wrong.
+# assimp, which it installs where they are missing. Markdown goes to stdout and, after a whole run, into docs/benchmark.md
+# between its marks; the plot of growth goes beside its pictures. Exit code 1: a hit or a picture of ours is wrong.
 set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
 source "$root/.ci/prepare.sh"
@@ -22,12 +22,12 @@ fi
 "$bench" --plot "$root/scenes/pictures/growth.svg" "$@" | tee "$root/build/bench/benchmark.md"
 
 # Only the lines between the marks are ours.
-readme=$root/README.md
-if grep -q '^<!-- benchmark -->$' "$readme" 2>/dev/null && grep -q '^<!-- end of benchmark -->$' "$readme"; then
+document=$root/docs/benchmark.md
+if grep -q '^<!-- benchmark -->$' "$document" 2>/dev/null && grep -q '^<!-- end of benchmark -->$' "$document"; then
     awk -v table="$root/build/bench/benchmark.md" '
         /^<!-- benchmark -->$/ { print; while ((getline line < table) > 0) print line; inside = 1; next }
         /^<!-- end of benchmark -->$/ { inside = 0 }
-        !inside' "$readme" >"$readme.new"
-    mv "$readme.new" "$readme"
-    say "README.md holds the new figures."
+        !inside' "$document" >"$document.new"
+    mv "$document.new" "$document"
+    say "docs/benchmark.md holds the new figures."
 fi

@@ -151,7 +151,7 @@ int run(Options options) {
         if (!chosen(options, part)) continue;
         std::fprintf(stderr, "%s\n", part.title);
         Findings findings = part.measure(options.setting);
-        text += "\n### " + std::string(part.title) + "\n\n" + findings.markdown;
+        text += "\n## " + std::string(part.title) + "\n\n" + findings.markdown;
         json[part.name] = findings.json;
         goals.insert(goals.end(), findings.goals.begin(), findings.goals.end());
         problems.insert(problems.end(), findings.problems.begin(), findings.problems.end());
@@ -159,7 +159,7 @@ int run(Options options) {
     }
     json["goals"] = to_json(goals);
     json["problems"] = problems;
-    std::cout << "Measured on: " << machine << ".\n\n### Goals\n\n" << goals_table(goals) << text << std::flush;
+    std::cout << "Measured on: " << machine << ".\n\n## Goals\n\n" << goals_table(goals) << text << std::flush;
     if (options.json) write_whole(*options.json, json.dump(2) + "\n");
     if (options.plot && !panels.empty()) write_whole(*options.plot, svg_of(panels, 3));
     for (const std::string& problem : problems) std::fprintf(stderr, "WRONG: %s\n", problem.c_str());
