@@ -2,13 +2,13 @@
 #include <cstdio>
 
 #include "app/commands.h"
-#include "app/console.h"
-#include "app/frame_writer.h"
-#include "app/interrupts.h"
-#include "app/output_files.h"
-#include "app/presenter.h"
-#include "app/statistics.h"
-#include "tracer/description/image.h"
+#include "app/process/console.h"
+#include "app/display/frame_writer.h"
+#include "app/process/interrupts.h"
+#include "app/process/output_files.h"
+#include "app/display/presenter.h"
+#include "app/process/statistics.h"
+#include "tracer/scene/image.h"
 #include "tracer/ground/stopwatch.h"
 #include "tracer/kernels/kernels.h"
 

@@ -1,9 +1,9 @@
 #include <map>
 
 #include "app/commands.h"
-#include "app/console.h"
-#include "tracer/compiled/scene_files.h"
-#include "tracer/description/scene_parser.h"
+#include "app/process/console.h"
+#include "tracer/files/load.h"
+#include "tracer/files/scene_text/parser.h"
 
 namespace raywalk {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "app/loaded_scene.h"
-#include "app/options.h"
+#include "app/command_line/options.h"
 
 namespace raywalk {
 

@@ -1,8 +1,8 @@
 #include "app/loaded_scene.h"
 
-#include "app/console.h"
-#include "app/output_files.h"
-#include "tracer/description/scene_parser.h"
+#include "app/process/console.h"
+#include "app/process/output_files.h"
+#include "tracer/files/scene_text/parser.h"
 #include "tracer/ground/stopwatch.h"
 
 namespace raywalk {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 
-#include "app/options.h"
+#include "app/command_line/options.h"
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/description/scene.h"
+#include "tracer/scene/scene.h"
 #include "tracer/rendering/renderer.h"
 
 namespace raywalk {

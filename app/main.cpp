@@ -9,10 +9,10 @@
 #include <system_error>
 
 #include "app/commands.h"
-#include "app/console.h"
-#include "app/interrupts.h"
-#include "app/output_files.h"
-#include "app/stacks.h"
+#include "app/process/console.h"
+#include "app/process/interrupts.h"
+#include "app/process/output_files.h"
+#include "app/process/stacks.h"
 
 namespace raywalk {
 

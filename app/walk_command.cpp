@@ -3,12 +3,12 @@
 #include <cstdio>
 
 #include "app/commands.h"
-#include "app/console.h"
-#include "app/interrupts.h"
-#include "app/statistics.h"
-#include "app/walk_loop.h"
+#include "app/process/console.h"
+#include "app/process/interrupts.h"
+#include "app/process/statistics.h"
+#include "app/walk/walk_loop.h"
 #include "tracer/kernels/kernels.h"
-#include "tracer/rendering/camera.h"
+#include "tracer/picture/camera.h"
 
 namespace raywalk {
 namespace {

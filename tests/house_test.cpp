@@ -64,7 +64,7 @@ std::optional<std::size_t> floor_of(const std::string& path) {
 // Plain data of a higher floor that a lower one may speak of.
 bool is_shared_data(const std::string& from, const std::string& included) {
     return from.starts_with("tracer/kernels/") &&
-           (included == "tracer/rendering/camera.h" || included == "tracer/rendering/film.h");
+           (included == "tracer/picture/camera.h" || included == "tracer/picture/film.h");
 }
 
 TEST(House, FilesIncludeOnlyTheirOwnFloorOrLowerOnes) {

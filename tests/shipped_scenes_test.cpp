@@ -13,8 +13,8 @@
 #include "scenes/generate/sculpture.h"
 #include "scenes/generate/teapot.h"
 #include "scenes/generate/textures.h"
-#include "tracer/description/obj_reader.h"
-#include "tracer/description/scene_parser.h"
+#include "tracer/files/mesh/obj_reader.h"
+#include "tracer/files/scene_text/parser.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "tests/bench/embree_scene.h"
 #include "tests/bench/kernels_on_embree.h"
 #include "tests/bench/whitted_on_embree.h"
-#include "tracer/description/scene_parser.h"
+#include "tracer/files/scene_text/parser.h"
 
 namespace raywalk::bench {
 

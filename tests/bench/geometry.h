@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tracer/compiled/hierarchy.h"
-#include "tracer/description/obj_reader.h"
+#include "tracer/files/mesh/obj_reader.h"
 
 namespace raywalk::bench {
 

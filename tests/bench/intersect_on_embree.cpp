@@ -1,7 +1,7 @@
 // The doors of intersect.h, asked of Embree in packets of sixteen, those of beams coherent.
 #include "tests/bench/kernels_on_embree.h"
-#include "tracer/kernels/intersect.h"
-#include "tracer/kernels/planes.h"
+#include "tracer/kernels/traversal/intersect.h"
+#include "tracer/kernels/traversal/planes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {

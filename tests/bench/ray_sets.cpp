@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "tracer/ground/numeric.h"
-#include "tracer/rendering/camera.h"
-#include "tracer/rendering/film.h"
+#include "tracer/picture/camera.h"
+#include "tracer/picture/film.h"
 
 namespace raywalk::bench {
 

@@ -4,7 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/rendering/film.h"
+#include "tracer/picture/film.h"
 #include "tracer/rendering/renderer.h"
 
 namespace raywalk::bench {

@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <iostream>
 
-#include "app/options.h"
-#include "app/walk_script.h"
-#include "tracer/description/image.h"
+#include "app/command_line/options.h"
+#include "app/walk/walk_script.h"
+#include "tracer/scene/image.h"
 
 namespace raywalk::fuzz {
 

@@ -1,5 +1,5 @@
 // A machine that is always the same one, so that findings can be reproduced on any.
-#include "app/cores.h"
+#include "app/process/cores.h"
 #include "tracer/kernels/kernels.h"
 
 namespace raywalk {

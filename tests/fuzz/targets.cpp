@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <iostream>
 
-#include "tracer/description/obj_reader.h"
-#include "tracer/description/scene_parser.h"
+#include "tracer/files/mesh/obj_reader.h"
+#include "tracer/files/scene_text/parser.h"
 
 namespace raywalk::fuzz {
 

@@ -2,111 +2,111 @@
 # Neighbours in this list share files, which saves building.
 
 # The trees and their builders.
-fault "the sweep forgets who began" tracer/compiled/kd_sweep.cpp \
+fault "the sweep forgets who began" tracer/compiled/kdtree/sweep.cpp \
     'below += start;' 'below += 1;' \
     hierarchy_tests 'KdSweep.FindsTheCheapestOfAllPlanes'
-fault "the sweep skips a stretch that holds the best plane" tracer/compiled/kd_sweep.cpp \
+fault "the sweep skips a stretch that holds the best plane" tracer/compiled/kdtree/sweep.cpp \
     'if (bound <= std::min(cheapest_between, sweep.best.cost))' 'if (bound * 1.2 <= std::min(cheapest_between, sweep.best.cost))' \
     hierarchy_tests 'KdSweep.FindsTheCheapestOfAllPlanes'
-fault "clipping keeps what is outside" tracer/compiled/kd_clip.cpp \
+fault "clipping keeps what is outside" tracer/compiled/kdtree/clip.cpp \
     'polygon = clipped(polygon, axis, -1, box.upper[axis]);' 'polygon = clipped(polygon, axis, -1, whole.upper[axis]);' \
     hierarchy_tests 'KdClip.IsPerfect*'
-fault "clipping loses a bit of a sphere" tracer/compiled/kd_clip.cpp \
+fault "clipping loses a bit of a sphere" tracer/compiled/kdtree/clip.cpp \
     'const double reach = std::sqrt(room) + margin;' 'const double reach = std::sqrt(room) * 0.999;' \
     hierarchy_tests 'KdClip.LosesNoPointOfASpheresSurface'
-fault "boxes of a split's sides overlap by a bin" tracer/compiled/bvh_binning.cpp \
+fault "boxes of a split's sides overlap by a bin" tracer/compiled/bvh/binning.cpp \
     '(i < plane.bin ? lower : upper)' '(i < plane.bin - 1 ? lower : upper)' \
     hierarchy_tests '*Invariants.HoldForTheBvh*'
 
 # Parsers.
-fault "numbers may lie below their range" tracer/description/scene_values.cpp \
+fault "numbers may lie below their range" tracer/files/scene_text/values.cpp \
     'value < least || value > most)' 'value > most)' \
     description_tests '*BadFile*'
-fault "infinity is a number" tracer/description/scene_values.cpp \
+fault "infinity is a number" tracer/files/scene_text/values.cpp \
     'std::isnan(value) || text.find_first_of("iI") != std::string_view::npos' 'std::isnan(value)' \
     description_tests '*BadFile*'
-fault "more values than wanted are passed over" tracer/description/scene_values.cpp \
+fault "more values than wanted are passed over" tracer/files/scene_text/values.cpp \
     'if (!failed_ && more()) {' 'if (false) {' \
     description_tests '*BadFile*'
-fault "negative indices are off by one" tracer/description/obj_chunk.cpp \
+fault "negative indices are off by one" tracer/files/mesh/obj_chunk.cpp \
     'static_cast<std::uint32_t>(count) - small)' 'static_cast<std::uint32_t>(count) - small + 1)' \
     description_tests 'ObjTest.EveryIndexFormNamesTheSameTriangle'
-fault "polygons are strips" tracer/description/obj_chunk.cpp \
+fault "polygons are strips" tracer/files/mesh/obj_chunk.cpp \
     'if (count == 0) first = corner;' 'first = previous;' \
     description_tests 'ObjTest.PolygonsAreFansFromTheirFirstCorner'
 
 # Film, camera and walk.
-fault "a cleared film keeps its samples" tracer/rendering/film.cpp \
+fault "a cleared film keeps its samples" tracer/picture/film.cpp \
     'std::fill(samples.begin(), samples.end(), 0)' '(void)0' \
     rendering_tests 'Film.*:Renderer.OnlyAChangeOfTheViewRestarts'
-fault "normalising brightens dark pictures" tracer/rendering/film.cpp \
+fault "normalising brightens dark pictures" tracer/picture/film.cpp \
     'float largest = 1;' 'float largest = 0;' \
     rendering_tests 'Film.NormalizingBringsTheLargestChannelToOneAndNeverBrightens'
-fault "the mean is a sum" tracer/rendering/film.cpp \
+fault "the mean is a sum" tracer/picture/film.cpp \
     'film.tiles[tile].rgb[channel][lane] * scale;' 'film.tiles[tile].rgb[channel][lane];' \
     rendering_tests 'Film.MeanRadianceIsTheSumOverTheSamplesWithRowsFromTheTop'
-fault "toggled twice is orthographic" tracer/rendering/camera.cpp \
+fault "toggled twice is orthographic" tracer/picture/camera.cpp \
     'camera.projection == Projection::perspective ? Projection::orthographic : Projection::perspective' \
     'Projection::orthographic' \
     rendering_tests 'Camera.TheProjectionToggledTwiceIsTheSameCamera'
-fault "the view goes over the top" tracer/rendering/walk.cpp \
+fault "the view goes over the top" app/walk/walk.cpp \
     'std::clamp(pitch + pitch_change, -limit, limit)' 'pitch + pitch_change' \
     rendering_tests 'Walk.PitchStopsAt89Degrees'
-fault "a step of a turned view goes the old way" tracer/rendering/walk.cpp \
+fault "a step of a turned view goes the old way" app/walk/walk.cpp \
     'Camera other = turned(camera, yaw / 2, pitch / 2);' 'Camera other = camera;' \
     rendering_tests 'Walk.*'
-fault "counts in a walk script are passed over" app/walk_script.cpp \
+fault "counts in a walk script are passed over" app/walk/walk_script.cpp \
     'counted ? count : 1' '1' \
     app_tests 'WalkScript.*'
 
 # Kernels: what rays hit.
-fault "triangles reach beyond their third edge" tracer/kernels/ray_shapes.h \
+fault "triangles reach beyond their third edge" tracer/kernels/traversal/ray_shapes.h \
     'r.u + r.v <= Real(1.0f) + slack' 'r.u + r.v <= Real(1.1f)' \
     traversal_tests '*FindsTheHitsThatALoop*'
-fault "triangles leave gaps" tracer/kernels/ray_shapes.h \
+fault "triangles leave gaps" tracer/kernels/traversal/ray_shapes.h \
     'min(r.u, r.v) >= -slack' 'min(r.u, r.v) >= slack' \
     traversal_tests '*LetsNoRayOutOfAClosedMesh*'
-fault "no ray starts inside a sphere" tracer/kernels/ray_shapes.h \
+fault "no ray starts inside a sphere" tracer/kernels/traversal/ray_shapes.h \
     'select(first > t_min, first, middle + half)' 'first' \
     traversal_tests '*FindsTheHitsThatALoop*'
-fault "of equal hits the last counts" tracer/kernels/ray_shapes.h \
+fault "of equal hits the last counts" tracer/kernels/traversal/ray_shapes.h \
     'distance[l] == hit.t && id >= hit.id' 'distance[l] == hit.t && id == hit.id' \
     traversal_tests 'TraversalBits.*'
-fault "a beam is not as wide as its rays" tracer/kernels/beam.h \
+fault "a beam is not as wide as its rays" tracer/kernels/traversal/beam.h \
     'beam.u1 = -wider(least[1])' 'beam.u1 = wider(least[0])' \
     traversal_tests '*FindsTheHitsThatALoop*'
-fault "beams end at the nearest hit of their rays" tracer/kernels/beam.h \
+fault "beams end at the nearest hit of their rays" tracer/kernels/traversal/beam.h \
     'reduce_max(depth, beam.group_depth)' 'reduce_min(depth, beam.group_depth)' \
     traversal_tests '*FindsTheHitsThatALoop*'
-fault "rays of a stream are lost with the last group" tracer/kernels/stream_traversal.h \
+fault "rays of a stream are lost with the last group" tracer/kernels/traversal/stream_traversal.h \
     'g < beam_rays / lanes; ++g)' 'g < beam_rays / lanes - 1; ++g)' \
     traversal_tests '*FindsTheHitsThatALoop*'
-fault "the farthest child of a stream comes first, and the rest never" tracer/kernels/stream_traversal.h \
+fault "the farthest child of a stream comes first, and the rest never" tracer/kernels/traversal/stream_traversal.h \
     'while (!stack.empty())' 'while (!stack.empty() && done == 0 && stack.size() < 2)' \
     traversal_tests '*FindsTheHitsThatALoop*'
 
 # Kernels: how it looks.
-fault "light fades too fast" tracer/kernels/phong.h \
+fault "light fades too fast" tracer/kernels/shading/phong.h \
     'attenuation = 0.02f' 'attenuation = 0.0201f' \
     shading_tests 'Shading.LightFadesByTheLengthOfItsWholePath'
-fault "the highlight lies elsewhere" tracer/kernels/phong.h \
+fault "the highlight lies elsewhere" tracer/kernels/shading/phong.h \
     'mul_sub(cosine * Real(2.0f)' 'mul_sub(cosine * Real(1.9f)' \
     shading_tests 'Shading.PhongAtAKnownAngle'
-fault "mirrors are bent" tracer/kernels/whitted.h \
+fault "mirrors are bent" tracer/kernels/whitted/spawn.h \
     'Real(-2.0f) * dot' 'Real(-1.99f) * dot' \
     shading_tests 'Shading.MirrorShowsTheVirtualImage'
-fault "glass bends the wrong way" tracer/kernels/whitted.h \
+fault "glass bends the wrong way" tracer/kernels/whitted/spawn.h \
     'eta = medium / index' 'eta = index / medium' \
     shading_tests 'Shading.GlassSphereBendsRaysBySnellsLaw'
-fault "total reflection lets light out" tracer/kernels/whitted.h \
+fault "total reflection lets light out" tracer/kernels/whitted/spawn.h \
     'active & s.sphere & (squared < Real(0.0f))' 'active & s.sphere & (squared < Real(-9.0f))' \
     shading_tests 'Shading.TotalReflectionReflects'
-fault "black and white change places" tracer/kernels/texture.h \
+fault "black and white change places" tracer/kernels/shading/texture.h \
     'select(floor(half) < half, Real(1.0f), Real(0.0f))' 'select(floor(half) < half, Real(0.0f), Real(1.0f))' \
     shading_tests 'Texturing.GridOnASphereFollowsLongitudeAndLatitude'
-fault "rows of an image are columns" tracer/kernels/texture.h \
+fault "rows of an image are columns" tracer/kernels/shading/texture.h \
     'cell(a - floor(a), rows) * columns' 'cell(a - floor(a), columns) * rows' \
     shading_tests 'Texturing.ImageShowsTheTexelUnderEveryPoint'
-fault "vertex normals at the wrong corners" tracer/kernels/surface.h \
+fault "vertex normals at the wrong corners" tracer/kernels/shading/surface.h \
     'mul_add(corner(2), hit.v, mul_add(corner(1), hit.u,' 'mul_add(corner(1), hit.v, mul_add(corner(2), hit.u,' \
     shading_tests 'SmoothTriangle.*'

@@ -7,10 +7,10 @@
 #include <thread>
 #include <vector>
 
-#include "app/fit.h"
-#include "app/frame_exchange.h"
-#include "app/frame_pacing.h"
-#include "app/frame_writer.h"
+#include "app/display/fit.h"
+#include "app/display/frame_exchange.h"
+#include "app/walk/frame_pacing.h"
+#include "app/display/frame_writer.h"
 
 namespace raywalk {
 namespace {

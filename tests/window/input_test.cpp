@@ -1,13 +1,13 @@
 // Keys to camera by time (spec 2), without a window.
-#include "app/input.h"
+#include "app/walk/input.h"
 
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
 
-#include "app/walk_script.h"
-#include "app/window.h"
-#include "tracer/rendering/walk.h"
+#include "app/walk/walk_script.h"
+#include "app/display/window.h"
+#include "app/walk/walk.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,5 +1,5 @@
 // Frames drawn into memory by the commands that draw windows: every way from the staging buffer to the picture.
-#include "app/presenter.h"
+#include "app/display/presenter.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "app/fit.h"
-#include "app/frame_writer.h"
+#include "app/display/fit.h"
+#include "app/display/frame_writer.h"
 
 namespace raywalk {
 namespace {

@@ -1,5 +1,5 @@
 // Tracing beside the window: whatever comes and goes, the last view is what ends up in the frames, with every sample.
-#include "app/render_thread.h"
+#include "app/walk/render_thread.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <memory>
 #include <random>
 
-#include "app/frame_writer.h"
+#include "app/display/frame_writer.h"
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/rendering/walk.h"
+#include "app/walk/walk.h"
 
 namespace raywalk {
 namespace {

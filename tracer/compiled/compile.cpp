@@ -10,7 +10,7 @@
 
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/compiled/mesh_placement.h"
-#include "tracer/compiled/scene_files.h"
+#include "tracer/files/load.h"
 #include "tracer/ground/stopwatch.h"
 
 namespace raywalk {

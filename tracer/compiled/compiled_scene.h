@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "tracer/compiled/hierarchy.h"
-#include "tracer/description/image.h"
-#include "tracer/description/limits.h"
-#include "tracer/description/scene.h"
+#include "tracer/scene/image.h"
+#include "tracer/scene/limits.h"
+#include "tracer/scene/scene.h"
 #include "tracer/ground/aligned.h"
 
 namespace raywalk {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/description/obj_reader.h"
-#include "tracer/description/scene.h"
+#include "tracer/files/mesh/obj_reader.h"
+#include "tracer/scene/scene.h"
 
 namespace raywalk {
 

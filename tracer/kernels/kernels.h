@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/kernels/ray_blocks.h"
-#include "tracer/rendering/camera.h"
-#include "tracer/rendering/film.h"
+#include "tracer/kernels/traversal/ray_blocks.h"
+#include "tracer/picture/camera.h"
+#include "tracer/picture/film.h"
 
 namespace raywalk {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "tracer/kernels/kernels.h"
-#include "tracer/kernels/ray_arrays.h"
+#include "tracer/kernels/traversal/ray_arrays.h"
 
 namespace raywalk {
 

@@ -7,8 +7,8 @@
 
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/kernels/kernels.h"
-#include "tracer/rendering/camera.h"
-#include "tracer/rendering/film.h"
+#include "tracer/picture/camera.h"
+#include "tracer/picture/film.h"
 
 namespace raywalk {
 

@@ -1,0 +1,51 @@
+// A window and its keys. Only the main thread may use it.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "app/walk/input.h"
+
+struct GLFWwindow;
+
+namespace raywalk {
+
+// What a key of the keyboard does. Walking goes by the key's place, so that W, S, A, D lie as they do on a US keyboard
+// whatever is printed on them (`glfw_key` names places); T and Q go by what is printed (`label`, empty if unknown),
+// so that the key labelled A of a French keyboard, in the place of Q, does not quit. Escape quits everywhere.
+std::optional<WalkKey> walk_key(int glfw_key, std::string_view label);
+
+class Window {
+  public:
+    // Hidden at first; `size` in pixels, made smaller where the screen is. Throws NoDisplayError.
+    Window(glm::ivec2 size, const std::string& title);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    [[nodiscard]] GLFWwindow* handle() const { return window_; }
+    [[nodiscard]] glm::ivec2 pixels() const;  // of what is drawn; zero while minimised on some systems
+    void show();
+    void set_title(const std::string& title);
+
+    // Handles events; returns after some came, after wake(), or after `seconds`.
+    void wait(double seconds);
+    // Ends a wait, from any thread.
+    static void wake();
+    static double now();  // seconds; the clock of `input`
+
+    // What the events said. The reader clears what it has acted upon.
+    Input input;
+    int exposure_presses = 0;  // of ], less those of [
+    bool resized = false;
+    bool damaged = false;  // to be drawn again
+    [[nodiscard]] bool close_requested() const;
+
+  private:
+    void connect();
+    GLFWwindow* window_ = nullptr;
+};
+
+}  // namespace raywalk

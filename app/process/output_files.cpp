@@ -1,0 +1,65 @@
+#include "app/process/output_files.h"
+
+#include <system_error>
+
+#include "app/process/interrupts.h"
+#include "tracer/files/load.h"
+#include "tracer/ground/error.h"
+#include "tracer/ground/whole_file.h"
+
+namespace raywalk {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool has_output(const Options& options) { return options.mode == Mode::render || options.mode == Mode::capture; }
+bool has_statistics(const Options& options) { return options.stats && *options.stats != "-"; }
+
+void require_writable(const fs::path& file) {
+    if (const std::string obstacle = obstacle_to_writing(file); !obstacle.empty())
+        throw WorkError("cannot write " + quoted_name(file.string()) + ": " + obstacle);
+}
+
+// Whether there or not yet there; devices take any number of files.
+bool same_file(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    if (fs::exists(a, error)) return fs::is_regular_file(a, error) && fs::equivalent(a, b, error) && !error;
+    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) && !error;
+}
+
+}  // namespace
+
+void require_writable_outputs(const Options& options) {
+    if (has_output(options)) require_writable(options.output);
+    if (options.frames) require_writable(*options.frames);
+    if (!has_statistics(options)) return;
+    require_writable(*options.stats);
+    if (has_output(options) && same_file(options.output, *options.stats))
+        throw UsageError("--stats " + quoted_name(options.stats->string()) +
+                         " is the picture's own name: choose another one");
+}
+
+void require_no_input(const fs::path& output, const Scene& scene) {
+    std::error_code error;
+    if (!fs::exists(output, error)) return;
+    const auto require_other = [&](const fs::path& input, const char* kind) {
+        if (same_file(output, input))
+            throw UsageError(quoted_name(output.string()) + " is " + kind +
+                             " and would be overwritten: choose another name");
+    };
+    require_other(scene.file, "the scene itself");
+    for (const Mesh& mesh : scene.meshes) require_other(mesh.file, "a mesh of the scene");
+    for (const Texture* texture : textures_of(scene))
+        if (const auto* image = std::get_if<ImageTexture>(&texture->pattern))
+            require_other(image->file, "an image of the scene");
+}
+
+void require_inputs_kept(const Options& options, const Scene& scene) {
+    if (has_output(options)) require_no_input(options.output, scene);
+    if (has_statistics(options)) require_no_input(*options.stats, scene);
+}
+
+Saving saving_now() { return interrupted() ? Saving::urgent : Saving::unhurried; }
+
+}  // namespace raywalk

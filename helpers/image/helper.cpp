@@ -1,0 +1,149 @@
+// The programs raywalk_png_jpeg and raywalk_openimageio: decode or encode one picture, from standard input to standard
+// output, both files in memory. Not for the command line: image_process.cpp runs them.
+//   decode FORMAT PIXELS MEMORY_BYTES OUTPUT_BYTES SECONDS
+//   encode FORMAT WIDTH HEIGHT          (JPEG)
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+#include "helpers/image/codecs.h"
+#include "tracer/files/image/helper_process.h"
+#include "tracer/ground/sanitized.h"
+
+namespace raywalk {
+
+namespace {
+
+void limit(int resource, std::uint64_t most) {
+    if (most == 0) return;
+    const rlimit both{most, most};
+    setrlimit(static_cast<__rlimit_resource>(resource), &both);
+}
+
+// The picture, without a copy of it: as little memory and time as can be.
+class Input {
+  public:
+    Input() {
+        struct stat status {};
+        if (fstat(STDIN_FILENO, &status) != 0 || status.st_size == 0) return;
+        size_ = static_cast<std::size_t>(status.st_size);
+        data_ = mmap(nullptr, size_, PROT_READ, MAP_SHARED, STDIN_FILENO, 0);
+        if (data_ == MAP_FAILED) throw std::bad_alloc();
+    }
+    ~Input() {
+        if (size_ > 0) munmap(data_, size_);
+    }
+    Input(const Input&) = delete;
+    Input& operator=(const Input&) = delete;
+    [[nodiscard]] std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
+
+  private:
+    void* data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+// The memory that this process may take: `memory_bytes` and that of so many pixels, now or when it allows itself more.
+void limit_memory(std::uint64_t memory_bytes, std::uint64_t pixels, std::uint64_t most_pixels) {
+    if (memory_bytes == 0 || RAYWALK_SANITIZED) return;  // sanitizers map memory of their own
+    const auto with = [&](std::uint64_t count) { return memory_bytes + memory_of_a_pixel * count; };
+    const rlimit both{with(std::min(pixels, most_pixels)), with(most_pixels)};
+    setrlimit(RLIMIT_DATA, &both);
+}
+
+bool write_all(const void* data, std::size_t size) {
+    const char* at = static_cast<const char*>(data);
+    while (size > 0) {
+        const ssize_t count = write(STDOUT_FILENO, at, size);
+        if (count <= 0) return false;
+        at += count;
+        size -= static_cast<std::size_t>(count);
+    }
+    return true;
+}
+
+int answer(ImageReply::Status status, std::uint64_t width, std::uint64_t height, const void* body, std::size_t size) {
+    const ImageReply reply{ImageReply::magic_number, status, static_cast<std::uint32_t>(width),
+                           static_cast<std::uint32_t>(height)};
+    return write_all(&reply, sizeof reply) && write_all(body, size) ? 0 : 1;
+}
+
+int answer_failure(const std::string& reason) {
+    constexpr std::size_t longest = 300;  // bytes of a reason
+    return answer(ImageReply::failed, 0, 0, reason.data(), std::min(reason.size(), longest));
+}
+
+int decode(ImageFormat format, std::string_view input, std::uint64_t most_pixels, std::uint64_t memory_bytes) {
+    // Until the header is read, and for a small picture always: a damaged one may want gigabytes for a few pixels.
+    constexpr std::uint64_t few_pixels = 1 << 22;
+    limit_memory(memory_bytes, few_pixels, most_pixels);
+    use_one_thread();  // whose stacks would count
+    std::uint64_t width = 0, height = 0;
+    bool too_large = false;
+    const ImageRefusal refusal = [&](std::uint64_t w, std::uint64_t h) -> std::string {
+        width = w;
+        height = h;
+        too_large = w * h > most_pixels;
+        if (!too_large) limit_memory(memory_bytes, std::max(w * h, few_pixels), most_pixels);
+        return too_large ? "too large" : "";
+    };
+    Image image;
+    const std::string problem = decode_pixels(format, {input.data(), input.size()}, refusal, image);
+    if (too_large) return answer(ImageReply::too_large, width, height, nullptr, 0);
+    if (!problem.empty()) return answer_failure(problem);
+    return answer(ImageReply::done, width, height, image.texels.data(), image.texels.size() * sizeof image.texels[0]);
+}
+
+int encode(std::string_view input, int width, int height) {
+    const std::size_t values = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3;
+    if (input.size() != values) return answer_failure("its size is wrong");
+    std::vector<unsigned char> bytes;
+    const std::string problem =
+        encode_bytes(width, height, {reinterpret_cast<const std::uint8_t*>(input.data()), values}, bytes);
+    if (!problem.empty()) return answer_failure(problem);
+    return answer(ImageReply::done, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), bytes.data(),
+                  bytes.size());
+}
+
+int run(int count, char** words) {
+    const std::string task = count > 1 ? words[1] : "";
+    const auto number = [&](int i) { return std::strtoull(words[i], nullptr, 10); };
+    if (!(task == "decode" && count == 7) && !(task == "encode" && count == 5)) {
+        std::fputs("raywalk runs this program for each picture that it reads or writes\n", stderr);
+        return 2;
+    }
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would take the picture
+    const auto format = static_cast<ImageFormat>(number(2));
+    if (task == "decode") {
+        limit(RLIMIT_CORE, 1);
+        if (!RAYWALK_SANITIZED) limit(RLIMIT_FSIZE, number(5));  // sanitizers write down what ran
+        limit(RLIMIT_CPU, number(6));
+    }
+    try {
+        const Input input;
+        return task == "decode" ? decode(format, input.bytes(), number(3), number(4))
+                                : encode(input.bytes(), static_cast<int>(number(3)), static_cast<int>(number(4)));
+    } catch (const std::bad_alloc&) {
+        return answer_failure("it needs too much memory");
+    } catch (const std::exception& error) {
+        return answer_failure(error.what());
+    }
+}
+
+}  // namespace
+
+}  // namespace raywalk
+
+int main(int count, char** words) {
+    const int code = raywalk::run(count, words);
+    if (RAYWALK_SANITIZED) return code;  // leaks are looked for at a usual end
+    std::_Exit(code);                    // nothing is left to say, and 260 libraries have a lot to tidy up
+}

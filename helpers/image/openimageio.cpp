@@ -1,0 +1,135 @@
+// The codecs of the program raywalk_openimageio: TIFF, EXR and HDR.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "helpers/image/codecs.h"
+
+namespace raywalk {
+
+namespace {
+
+constexpr int most_channels = 64;  // more is no picture; the first three are read
+
+// The name of a format's plugin; nullptr for formats that the other helper has.
+const char* plugin_name(ImageFormat format) {
+    switch (format) {
+        case ImageFormat::tiff:
+            return "tiff";
+        case ImageFormat::exr:
+            return "openexr";
+        case ImageFormat::hdr:
+            return "hdr";
+        case ImageFormat::png:
+        case ImageFormat::jpeg:
+            break;
+    }
+    return nullptr;
+}
+
+// The first line of what OpenImageIO says went wrong.
+std::string first_line(const std::string& message) {
+    if (message.empty()) return "it is damaged";
+    if (message.find("bad_alloc") != std::string::npos) return "it needs too much memory";
+    return message.substr(0, message.find('\n'));
+}
+
+std::uint32_t to_byte(float value) {
+    if (!(value > 0)) return 0;  // NaN too
+    return static_cast<std::uint32_t>(std::lround(std::min(value, 1.0f) * 255.0f));
+}
+std::uint32_t to_byte(std::uint8_t value) { return value; }
+
+template <class Value>
+std::uint32_t texel(const Value* channels, int count) {
+    const std::uint32_t red = to_byte(channels[0]);
+    if (count < 3) return red | red << 8 | red << 16;
+    return red | to_byte(channels[1]) << 8 | to_byte(channels[2]) << 16;
+}
+
+// Rows [begin, end) of the image, converted to texels.
+template <class Value>
+bool read_rows(OIIO::ImageInput& input, OIIO::TypeDesc type, int begin, int end, int channels, Image& image) {
+    const OIIO::ImageSpec& spec = input.spec();
+    const std::size_t width = static_cast<std::size_t>(image.width), rows = static_cast<std::size_t>(end - begin);
+    std::vector<Value> values(width * rows * static_cast<std::size_t>(channels));
+    const bool tiled = spec.tile_width > 0;  // then begin..end is the whole image
+    const bool read =
+        tiled ? input.read_image(0, 0, 0, channels, type, values.data())
+              : input.read_scanlines(0, 0, spec.y + begin, spec.y + end, spec.z, 0, channels, type, values.data());
+    if (!read) return false;
+    std::uint32_t* texels = image.texels.data() + width * static_cast<std::size_t>(begin);
+    for (std::size_t i = 0; i < width * rows; ++i)
+        texels[i] = texel(&values[i * static_cast<std::size_t>(channels)], channels);
+    return true;
+}
+
+std::string read_pixels(OIIO::ImageInput& input, Image& image) {
+    constexpr int band = 64;  // rows at a time: a picture is never held twice
+    const OIIO::ImageSpec spec = input.spec();
+    const int channels = spec.nchannels >= 3 ? 3 : 1;
+    const bool bytes = spec.format == OIIO::TypeDesc::UINT8;
+    const int step = spec.tile_width > 0 ? spec.height : band;
+    image.width = spec.width;
+    image.height = spec.height;
+    image.texels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+    for (int y = 0; y < spec.height; y += step) {
+        const int end = std::min(y + step, spec.height);
+        if (!(bytes ? read_rows<std::uint8_t>(input, OIIO::TypeDesc::UINT8, y, end, channels, image)
+                    : read_rows<float>(input, OIIO::TypeDesc::FLOAT, y, end, channels, image)))
+            return first_line(input.geterror());
+    }
+    return {};
+}
+
+}  // namespace
+
+void use_one_thread() {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
+}
+
+std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const ImageRefusal& refusal, Image& image) {
+    try {
+        const char* plugin = plugin_name(format);
+        const auto input = plugin ? OIIO::ImageInput::create(plugin) : nullptr;
+        if (!input) return "OpenImageIO cannot read its format";
+        OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());  // it only reads
+        OIIO::ImageSpec wishes, spec;
+        OIIO::Filesystem::IOProxy* proxy = &memory;
+        wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+        wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as the file has them, not dimmed by alpha
+        if (!input->open("image", spec, wishes)) return first_line(input->geterror());
+        if (spec.deep || spec.depth > 1) return "it is no flat picture";
+        if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return "it is empty";
+        if (spec.nchannels > most_channels) return "it has " + std::to_string(spec.nchannels) + " channels";
+        const auto width = static_cast<std::uint64_t>(spec.width), height = static_cast<std::uint64_t>(spec.height);
+        if (std::string reason = refusal(width, height); !reason.empty()) return reason;
+        // A tile may be larger than its picture.
+        if (spec.tile_width > 0) {
+            const std::uint64_t tile =
+                static_cast<std::uint64_t>(spec.tile_width) * static_cast<std::uint64_t>(spec.tile_height);
+            if (tile > width * height + 65'536)
+                if (std::string reason = refusal(static_cast<std::uint64_t>(spec.tile_width),
+                                                 static_cast<std::uint64_t>(spec.tile_height));
+                    !reason.empty())
+                    return reason;
+        }
+        std::string problem = read_pixels(*input, image);
+        input->close();
+        return problem;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
+std::string encode_bytes(int, int, std::span<const std::uint8_t>, std::vector<unsigned char>&) {
+    return "this program only reads";
+}
+
+}  // namespace raywalk

@@ -1,0 +1,31 @@
+// The meshes and images that a scene names, each file read once however often it is named.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "tracer/scene/image.h"
+#include "tracer/scene/limits.h"
+#include "tracer/files/mesh/obj_reader.h"
+#include "tracer/scene/scene.h"
+
+namespace raywalk {
+
+// Files read and what they are worth remarking on. Wrong files are in `errors`, and only then missing from `files`.
+template <class File>
+struct SceneFiles {
+    std::map<std::filesystem::path, File> files;
+    std::vector<Diagnostic> warnings, errors;
+    double seconds = 0;
+};
+
+// Meshes are read one after the other, each by all threads, and can be placed; images at the same time as each other.
+// Never throw InputError: a scene with several wrong files hears of all of them.
+SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits);
+SceneFiles<Image> read_images(const Scene& scene, const Limits& limits);
+
+// Every texture of the scene, in the order planes, spheres, faces, meshes.
+std::vector<const Texture*> textures_of(const Scene& scene);
+
+}  // namespace raywalk
