@@ -2,13 +2,13 @@
 #include <cstdio>
 
 #include "app/commands.h"
-#include "app/process/console.h"
 #include "app/display/frame_writer.h"
+#include "app/display/presenter.h"
+#include "app/process/console.h"
 #include "app/process/interrupts.h"
 #include "app/process/output_files.h"
-#include "app/display/presenter.h"
 #include "app/process/statistics.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 #include "tracer/ground/stopwatch.h"
 #include "tracer/kernels/kernels.h"
 

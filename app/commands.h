@@ -2,8 +2,8 @@
 // WorkError (1) and UsageError (2).
 #pragma once
 
-#include "app/loaded_scene.h"
 #include "app/command_line/options.h"
+#include "app/loaded_scene.h"
 
 namespace raywalk {
 

@@ -1,4 +1,5 @@
 #include "app/loaded_scene.h"
+#include "tracer/compiled/compile.h"
 
 #include "app/process/console.h"
 #include "app/process/output_files.h"

@@ -5,9 +5,9 @@
 #include <glm/vec2.hpp>
 
 #include "app/command_line/options.h"
-#include "tracer/compiled/compiled_scene.h"
-#include "tracer/scene/scene.h"
+#include "tracer/compiled/compile.h"
 #include "tracer/rendering/renderer.h"
+#include "tracer/scene/scene.h"
 
 namespace raywalk {
 

@@ -4,7 +4,7 @@
 #include "app/process/output_files.h"
 #include "app/process/progress.h"
 #include "app/process/statistics.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 #include "tracer/ground/stopwatch.h"
 #include "tracer/kernels/kernels.h"
 #include "tracer/rendering/renderer.h"

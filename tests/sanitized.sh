@@ -11,7 +11,7 @@ export build
 export left_out='*.BuildWorkGrowsAsNLogN:Hierarchies.OfALargeScene*:Hierarchies.HoldAMillion*:*/many_lights'
 left_out+=':Widths.PicturesAreTheSameToTheEye*:DepthOfField.BlurHasTheRadius*'
 # The slowest first.
-executables=(description_tests command_line_tests shading_tests traversal_tests shipped_tests hierarchy_tests
+executables=(files_tests command_line_tests shading_tests traversal_tests shipped_tests hierarchy_tests
     rendering_tests window_tests app_tests compiled_tests ground_tests)
 ninja -C "$build" "${executables[@]}"
 [[ ${2:-} != --only-build ]] || exit 0

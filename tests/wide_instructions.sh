@@ -11,5 +11,5 @@ objdump --disassemble --no-show-raw-insn --no-addresses "$1" | awk '
     }
     END {
         print functions + 0 " functions, " kernels + 0 " of them of one instruction set, " found + 0 " wrong instructions"
-        exit !(functions > 100 && kernels > 10 && found == 0)
+        exit !(functions > 50 && kernels > 10 && found == 0)
     }'

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include "app/process/cores.h"
 #include "app/command_line/option_table.h"
-#include "tracer/scene/image.h"
+#include "app/process/cores.h"
+#include "tracer/files/image/image.h"
 #include "tracer/ground/spelling.h"
 
 namespace raywalk {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "app/walk/walk_script.h"
-#include "tracer/compiled/compiled_scene.h"
-#include "tracer/scene/limits.h"
+#include "tracer/compiled/compile.h"
 #include "tracer/picture/camera.h"
+#include "tracer/scene/limits.h"
 
 namespace raywalk {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/command_line/options.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 #include "tracer/scene/scene.h"
 
 namespace raywalk {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "app/display/presenter.h"
-#include "app/walk/render_thread.h"
 #include "app/display/window.h"
+#include "app/walk/render_thread.h"
 #include "tracer/rendering/renderer.h"
 
 namespace raywalk {

@@ -4,8 +4,8 @@
 #include <cctype>
 #include <string>
 
-#include "tracer/ground/error.h"
 #include "app/walk/walk.h"
+#include "tracer/ground/error.h"
 
 namespace raywalk {
 

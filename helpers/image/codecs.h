@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tracer/scene/image.h"
 #include "tracer/files/image/helper_process.h"
+#include "tracer/scene/image.h"
 
 namespace raywalk {
 

@@ -9,7 +9,7 @@
 #include "scenes/generate/sculpture.h"
 #include "scenes/generate/teapot.h"
 #include "scenes/generate/textures.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 #include "tracer/ground/whole_file.h"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/process.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 
 namespace raywalk {
 

@@ -1,4 +1,5 @@
 #include "tests/bench/frames.h"
+#include "tracer/compiled/compile.h"
 
 #include <omp.h>
 

@@ -4,9 +4,9 @@
 #include <glm/geometric.hpp>
 
 #include "tests/support/process.h"
-#include "tracer/compiled/compiled_scene.h"
+#include "tracer/compiled/compile.h"
+#include "tracer/files/image/image.h"
 #include "tracer/files/load.h"
-#include "tracer/scene/image.h"
 
 namespace raywalk {
 namespace {

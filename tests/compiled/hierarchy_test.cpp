@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "tests/oracle/compiled_shapes.h"
+#include "tests/oracle/validate.h"
 #include "tracer/compiled/hierarchy.h"
 #include "tracer/compiled/shape_bounds.h"
 #include "tracer/ground/sanitized.h"

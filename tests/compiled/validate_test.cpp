@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tests/oracle/compiled_shapes.h"
+#include "tests/oracle/validate.h"
 #include "tracer/compiled/hierarchy.h"
 
 namespace raywalk::testing {

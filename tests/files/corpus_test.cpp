@@ -5,7 +5,7 @@
 
 #include "tests/files/folder.h"
 #include "tests/fuzz/targets.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 
 namespace raywalk {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "app/command_line/options.h"
 #include "app/walk/walk_script.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 
 namespace raywalk::fuzz {
 

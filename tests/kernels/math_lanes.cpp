@@ -1,8 +1,8 @@
 #include "tests/kernels/math_lanes.h"
 
+#include "tracer/kernels/lanes/math.h"
 #include "tracer/kernels/lanes/random.h"
 #include "tracer/kernels/shading/camera_rays.h"
-#include "tracer/kernels/lanes/math.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {

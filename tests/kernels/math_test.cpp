@@ -13,7 +13,7 @@
 
 namespace raywalk {
 
-// Each is defined by kernels_shading_math_lanes.cpp, compiled for its instruction set.
+// Each is defined by math_lanes.cpp, compiled for its instruction set.
 namespace N_AVX3 {
 extern const MathInLanes math;
 }

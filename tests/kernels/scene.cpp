@@ -1,4 +1,5 @@
 #include "tests/kernels/scene.h"
+#include "tracer/compiled/compile.h"
 
 #include <algorithm>
 #include <atomic>

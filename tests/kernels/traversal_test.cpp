@@ -3,8 +3,8 @@
 
 #include <bit>
 
-#include "tests/support/repetitions.h"
 #include "tests/kernels/traversal_scenes.h"
+#include "tests/support/repetitions.h"
 
 namespace raywalk::traversal_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "tests/oracle/shading_naive.h"
 #include "tests/kernels/scene.h"
+#include "tests/oracle/shading_naive.h"
 #include "tests/support/repetitions.h"
 
 namespace raywalk {

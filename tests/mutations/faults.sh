@@ -21,19 +21,19 @@ fault "boxes of a split's sides overlap by a bin" tracer/compiled/bvh/binning.cp
 # Parsers.
 fault "numbers may lie below their range" tracer/files/scene_text/values.cpp \
     'value < least || value > most)' 'value > most)' \
-    description_tests '*BadFile*'
+    files_tests '*BadFile*'
 fault "infinity is a number" tracer/files/scene_text/values.cpp \
     'std::isnan(value) || text.find_first_of("iI") != std::string_view::npos' 'std::isnan(value)' \
-    description_tests '*BadFile*'
+    files_tests '*BadFile*'
 fault "more values than wanted are passed over" tracer/files/scene_text/values.cpp \
     'if (!failed_ && more()) {' 'if (false) {' \
-    description_tests '*BadFile*'
+    files_tests '*BadFile*'
 fault "negative indices are off by one" tracer/files/mesh/obj_chunk.cpp \
     'static_cast<std::uint32_t>(count) - small)' 'static_cast<std::uint32_t>(count) - small + 1)' \
-    description_tests 'ObjTest.EveryIndexFormNamesTheSameTriangle'
+    files_tests 'ObjTest.EveryIndexFormNamesTheSameTriangle'
 fault "polygons are strips" tracer/files/mesh/obj_chunk.cpp \
     'if (count == 0) first = corner;' 'first = previous;' \
-    description_tests 'ObjTest.PolygonsAreFansFromTheirFirstCorner'
+    files_tests 'ObjTest.PolygonsAreFansFromTheirFirstCorner'
 
 # Film, camera and walk.
 fault "a cleared film keeps its samples" tracer/picture/film.cpp \
@@ -51,10 +51,10 @@ fault "toggled twice is orthographic" tracer/picture/camera.cpp \
     rendering_tests 'Camera.TheProjectionToggledTwiceIsTheSameCamera'
 fault "the view goes over the top" app/walk/walk.cpp \
     'std::clamp(pitch + pitch_change, -limit, limit)' 'pitch + pitch_change' \
-    rendering_tests 'Walk.PitchStopsAt89Degrees'
+    app_tests 'Walk.PitchStopsAt89Degrees'
 fault "a step of a turned view goes the old way" app/walk/walk.cpp \
     'Camera other = turned(camera, yaw / 2, pitch / 2);' 'Camera other = camera;' \
-    rendering_tests 'Walk.*'
+    app_tests 'Walk.*'
 fault "counts in a walk script are passed over" app/walk/walk_script.cpp \
     'counted ? count : 1' '1' \
     app_tests 'WalkScript.*'

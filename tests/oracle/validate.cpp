@@ -1,4 +1,6 @@
 // What must be true of a hierarchy, checked from the shapes alone and with none of the builders' code for it.
+#include "tests/oracle/validate.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -6,7 +8,6 @@
 #include <sstream>
 #include <vector>
 
-#include "tracer/compiled/hierarchy.h"
 #include "tracer/compiled/shape_bounds.h"
 
 namespace raywalk {
@@ -23,7 +24,7 @@ std::string text(const Words&... words) {
 }
 
 double along(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
+Vector cross_product(const Vector& a, const Vector& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
@@ -63,9 +64,9 @@ bool meets(const TriangleCorners& triangle, const Cell& cell) {
         unit[k] = 1;
         if (separates(unit)) return false;
         for (const Vector& e : edge)
-            if (separates(cross(unit, e))) return false;
+            if (separates(cross_product(unit, e))) return false;
     }
-    return !separates(cross(edge[0], edge[1]));
+    return !separates(cross_product(edge[0], edge[1]));
 }
 
 bool meets(const SphereShape& sphere, const Cell& cell) {

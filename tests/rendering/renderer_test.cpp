@@ -1,4 +1,5 @@
 #include "tracer/rendering/renderer.h"
+#include "tracer/compiled/compile.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 
 #include "app/display/fit.h"
 #include "app/display/frame_exchange.h"
-#include "app/walk/frame_pacing.h"
 #include "app/display/frame_writer.h"
+#include "app/walk/frame_pacing.h"
 
 namespace raywalk {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "app/walk/walk_script.h"
 #include "app/display/window.h"
 #include "app/walk/walk.h"
+#include "app/walk/walk_script.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "app/display/frame_writer.h"
-#include "tracer/compiled/compiled_scene.h"
 #include "app/walk/walk.h"
+#include "tracer/compiled/compile.h"
 
 namespace raywalk {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "tracer/compiled/compiled_scene.h"
+#include "tracer/compiled/compile.h"
 #include "tracer/compiled/mesh_placement.h"
 #include "tracer/files/load.h"
 #include "tracer/ground/stopwatch.h"

@@ -5,9 +5,6 @@
 #include <vector>
 
 #include "tracer/compiled/hierarchy.h"
-#include "tracer/scene/image.h"
-#include "tracer/scene/limits.h"
-#include "tracer/scene/scene.h"
 #include "tracer/ground/aligned.h"
 
 namespace raywalk {
@@ -86,19 +83,5 @@ struct CompiledScene {
     std::vector<LightPoint> light_points;
     std::vector<LightGroup> light_groups;
 };
-
-struct CompileStatistics {
-    double mesh_seconds = 0, image_seconds = 0, total_seconds = 0;
-    BuildStatistics build;
-};
-
-struct CompileOptions {
-    Accelerator accelerator = Accelerator::bvh;  // builds and traces whole frames faster; hits are the same
-    KdOptions kd;
-};
-
-// Opens the scene's meshes and images, places the meshes, builds the hierarchy. Throws InputError.
-CompiledScene compile(const Scene& scene, const CompileOptions& options, const Limits& limits,
-                      std::vector<Diagnostic>& warnings, CompileStatistics* statistics = nullptr);
 
 }  // namespace raywalk

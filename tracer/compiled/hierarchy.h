@@ -110,8 +110,4 @@ struct BuildStatistics {
 Hierarchy build_kd_tree(const Shapes& shapes, const KdOptions& options, BuildStatistics* statistics = nullptr);
 Hierarchy build_bvh(const Shapes& shapes, BuildStatistics* statistics = nullptr);
 
-// Checks every invariant (each shape in each leaf that it touches, child boxes inside parents, indices in range,
-// padding lanes empty); returns what is wrong, empty when nothing is.
-std::string validate(const Hierarchy& hierarchy, const Shapes& shapes);
-
 }  // namespace raywalk

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "tracer/scene/limits.h"
+
 namespace raywalk {
 
 float limited(double x) { return static_cast<float>(std::clamp(x, -largest_length, largest_length)); }
@@ -56,14 +58,6 @@ std::vector<glm::dvec3> vertex_directions(const TriangleMesh& mesh, const std::v
 }
 
 }  // namespace
-
-std::string placement_problem(const TriangleMesh& mesh) {
-    if (mesh.positions.empty()) return "it has no vertices";
-    if (mesh.faces.empty()) return "it has no faces";
-    const auto same = [&](const glm::vec3& p) { return p == mesh.positions.front(); };
-    if (std::all_of(mesh.positions.begin(), mesh.positions.end(), same)) return "all its vertices are one point";
-    return {};
-}
 
 std::vector<glm::vec3> placed_positions(const TriangleMesh& mesh, const glm::dvec3& center, double radius) {
     const glm::dvec3 mean = vertex_mean(mesh);

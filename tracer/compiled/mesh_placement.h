@@ -2,12 +2,11 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/files/mesh/obj_reader.h"
 #include "tracer/scene/scene.h"
+#include "tracer/scene/triangle_mesh.h"
 
 namespace raywalk {
 
@@ -17,9 +16,6 @@ inline constexpr std::size_t worth_threads = 4096;
 // Brought to at most `largest_length` in magnitude: what is farther away could not be seen anyway.
 float limited(double x);
 glm::vec3 limited(const glm::dvec3& point);
-
-// Why the mesh cannot be placed ("it has no faces"), or nothing.
-std::string placement_problem(const TriangleMesh& mesh);
 
 // The mesh's vertices, their mean moved to `center`, the farthest scaled to `radius` from it. Computed in double.
 // placement_problem() must be empty.

@@ -5,7 +5,6 @@
 #include <thread>
 #include <utility>
 
-#include "tracer/compiled/mesh_placement.h"
 #include "tracer/ground/stopwatch.h"
 
 namespace raywalk {

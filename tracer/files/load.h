@@ -5,9 +5,9 @@
 #include <map>
 #include <vector>
 
-#include "tracer/scene/image.h"
-#include "tracer/scene/limits.h"
+#include "tracer/files/image/image.h"
 #include "tracer/files/mesh/obj_reader.h"
+#include "tracer/scene/limits.h"
 #include "tracer/scene/scene.h"
 
 namespace raywalk {

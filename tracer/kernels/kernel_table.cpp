@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "tracer/kernels/lanes/lanes.h"
-#include "tracer/kernels/traversal/intersect.h"
 #include "tracer/kernels/kernels.h"
+#include "tracer/kernels/lanes/lanes.h"
 #include "tracer/kernels/tile_loop.h"
+#include "tracer/kernels/traversal/intersect.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {

@@ -9,8 +9,8 @@
 
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/kernels/traversal/ray_blocks.h"
-#include "tracer/picture/camera.h"
 #include "tracer/picture/film.h"
+#include "tracer/picture/view.h"
 
 namespace raywalk {
 
@@ -23,13 +23,6 @@ struct RayCounts {
         return *this;
     }
     friend bool operator==(const RayCounts&, const RayCounts&) = default;
-};
-
-// What a picture is made with besides camera and size.
-struct SampleSettings {
-    std::uint32_t seed = 0;
-    bool one_shot = true;  // true: one sample a pixel is all there will be, so every point of an area light is used
-    friend bool operator==(const SampleSettings&, const SampleSettings&) = default;
 };
 
 // Samples [first_sample, first_sample + sample_count) of the tile at pixel (x, y) of a width x height picture.

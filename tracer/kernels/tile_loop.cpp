@@ -6,12 +6,12 @@
 #include <cstdint>
 
 #include "tracer/kernels/shading/camera_rays.h"
-#include "tracer/kernels/traversal/intersect.h"
-#include "tracer/kernels/traversal/mirror_beam.h"
 #include "tracer/kernels/shading/phong.h"
 #include "tracer/kernels/shading/resolve.h"
 #include "tracer/kernels/shading/surface.h"
 #include "tracer/kernels/tile_scratch.h"
+#include "tracer/kernels/traversal/intersect.h"
+#include "tracer/kernels/traversal/mirror_beam.h"
 #include "tracer/kernels/whitted/spawn.h"
 
 HWY_BEFORE_NAMESPACE();

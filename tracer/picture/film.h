@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "tracer/scene/image.h"
 #include "tracer/ground/aligned.h"
+#include "tracer/scene/image.h"
 
 namespace raywalk {
 

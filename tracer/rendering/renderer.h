@@ -7,18 +7,10 @@
 
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/kernels/kernels.h"
-#include "tracer/picture/camera.h"
 #include "tracer/picture/film.h"
+#include "tracer/picture/view.h"
 
 namespace raywalk {
-
-// Everything the accumulated picture depends on; compared by value.
-struct View {
-    Camera camera;
-    int width = 0, height = 0;
-    SampleSettings settings;
-    friend bool operator==(const View&, const View&) = default;
-};
 
 class Renderer {
   public:

@@ -1,16 +1,9 @@
-// Pictures in and out. What is read, and JPEG, is the work of processes of their own (image_process.h).
+// Pictures in memory.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <vector>
-
-#include "tracer/scene/limits.h"
-#include "tracer/ground/error.h"
 
 namespace raywalk {
 
@@ -20,23 +13,11 @@ struct Image {
     std::vector<std::uint32_t> texels;
 };
 
-// Reads PNG, JPEG, TIFF, EXR or HDR (told by content, nothing else is tried). Throws InputError placed at `where`, also
-// when a picture breaks its decoder, or takes too much memory or time.
-Image read_image(const std::filesystem::path& file, const Limits& limits, const SourceLocation& where);
-// The same for a file already in memory; `file` names it in messages.
-Image decode_image(std::string_view bytes, const std::filesystem::path& file, const Limits& limits,
-                   const SourceLocation& where);
-
 // Linear RGB, 3 floats a pixel, row 0 on top.
 struct FloatImage {
     int width = 0, height = 0;
     std::vector<float> rgb;
 };
-
-// True for .png .jpg .jpeg .exr .pfm .hdr .tif .tiff (any case).
-bool is_image_extension(const std::filesystem::path& file);
-// True where the format holds linear floats (.exr .pfm .hdr .tif .tiff), false where it holds 8-bit display values.
-bool is_float_extension(const std::filesystem::path& file);
 
 // A picture that is made row by row, when it is written: `read(begin, end, rgb)` fills `rgb` with the rows [begin,
 // end), from several threads at once.
@@ -44,18 +25,5 @@ struct FloatRows {
     int width = 0, height = 0;
     std::function<void(int begin, int end, float* rgb)> read;
 };
-
-enum class Saving {
-    unhurried,  // compressed, and on the disk in the end
-    urgent      // somebody waits for the program's end: larger, and known to the system, which brings it to the disk
-};
-
-// Writes `file` whole or not at all (see whole_file.h); the extension chooses the format. Throws WorkError naming the
-// file and the system's reason. The file's bytes are the same for any number of threads.
-void write_image(const std::filesystem::path& file, const FloatRows& picture, Saving saving = Saving::unhurried);
-void write_image(const std::filesystem::path& file, const FloatImage& image, Saving saving = Saving::unhurried);
-// 8-bit RGB, 3 bytes a pixel; formats as above (a float format gets value / 255).
-void write_image(const std::filesystem::path& file, int width, int height, std::span<const std::uint8_t> rgb,
-                 Saving saving = Saving::unhurried);
 
 }  // namespace raywalk

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "tests/files/folder.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 #include "tracer/ground/sanitized.h"
 #include "tracer/ground/whole_file.h"
 

@@ -10,7 +10,7 @@
 
 #include "tests/files/folder.h"
 #include "tests/support/process.h"
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 
 namespace raywalk {
 namespace {

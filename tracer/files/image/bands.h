@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 #include "tracer/ground/whole_file.h"
 
 namespace raywalk {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 
 namespace raywalk {
 

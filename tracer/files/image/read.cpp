@@ -1,4 +1,4 @@
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 
 #include <algorithm>
 #include <cstring>

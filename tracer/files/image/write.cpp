@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tracer/scene/image.h"
 #include "tracer/files/image/extension.h"
 #include "tracer/files/image/helper_process.h"
+#include "tracer/files/image/image.h"
 #include "tracer/files/image/writers.h"
 
 namespace raywalk {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tracer/scene/image.h"
+#include "tracer/files/image/image.h"
 #include "tracer/ground/whole_file.h"
 
 namespace raywalk {

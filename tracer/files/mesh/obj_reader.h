@@ -8,17 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "tracer/scene/limits.h"
 #include "tracer/ground/error.h"
+#include "tracer/scene/limits.h"
+#include "tracer/scene/triangle_mesh.h"
 
 namespace raywalk {
-
-struct TriangleMesh {
-    std::vector<glm::vec3> positions;                       // as in the file, not moved or scaled
-    std::vector<std::array<std::uint32_t, 3>> faces;        // indices into positions
-    std::vector<glm::vec3> normals;                         // as in the file (unit length not promised); may be empty
-    std::vector<std::array<std::int32_t, 3>> normal_faces;  // indices into normals or -1; empty, or one per face
-};
 
 // Throws InputError (with file:line:column) on a malformed file, on indices out of range, on numbers that are not
 // finite, on a file without faces and on a broken budget; `where` is the place that named a file which cannot be read.

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "tracer/scene/limits.h"
-#include "tracer/scene/scene.h"
 #include "tracer/files/scene_text/lexer.h"
 #include "tracer/ground/error.h"
+#include "tracer/scene/limits.h"
+#include "tracer/scene/scene.h"
 
 namespace raywalk {
 

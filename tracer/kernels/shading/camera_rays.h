@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 
+#include "tracer/kernels/kernels.h"
 #include "tracer/kernels/lanes/random.h"
 #include "tracer/kernels/lanes/vectors.h"
-#include "tracer/kernels/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {

@@ -4,9 +4,9 @@
 #include <cstddef>
 
 #include "tracer/compiled/compiled_scene.h"
-#include "tracer/kernels/lanes/vectors.h"
 #include "tracer/kernels/lanes/math.h"
 #include "tracer/kernels/lanes/records.h"
+#include "tracer/kernels/lanes/vectors.h"
 #include "tracer/kernels/shading/texture.h"
 
 HWY_BEFORE_NAMESPACE();

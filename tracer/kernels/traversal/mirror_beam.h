@@ -8,8 +8,8 @@
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/ground/numeric.h"
 #include "tracer/kernels/lanes/vectors.h"
-#include "tracer/kernels/traversal/intersect.h"
 #include "tracer/kernels/tile_scratch.h"
+#include "tracer/kernels/traversal/intersect.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {
