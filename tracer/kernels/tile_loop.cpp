@@ -111,9 +111,16 @@ HWY_INLINE void store_for_lights(const HitLanes& hit, const SurfaceLanes& s, con
     shade.all_fifth_powers &= none(and_not(m.shininess == Int(5), hit.active & shiny));
 }
 
-// Queues the mirrored and refracted rays of a group's hits.
-HWY_INLINE void spawn(const HitLanes& hit, const SurfaceLanes& s, const MaterialLanes& m, Real offset, Real length,
-                      Real weight, Real medium, Int pixel, RayQueue& next, RayCounts& counts) {
+// Whether a group's hits reflect or transmit anything.
+HWY_INLINE bool spawns(const HitLanes& hit, const MaterialLanes& m) {
+    return any(hit.active & (max(m.reflection, m.transmission) > Real(0.0f)));
+}
+
+// Queues the mirrored and refracted rays of a group's hits. Not inlined: its registers would be spilled in every loop
+// over hits, where few reflect (cornell_box 1.2 to 1.3 times as fast without).
+HWY_NOINLINE void spawn(const HitLanes& hit, const SurfaceLanes& s, const MaterialLanes& m, const Real& offset,
+                        const Real& length, const Real& weight, const Real& medium, const Int& pixel, RayQueue& next,
+                        RayCounts& counts) {
     const Real zero(0.0f);
     const Mask reflecting = hit.active & (m.reflection > zero), transmitting = hit.active & (m.transmission > zero);
     if (any(reflecting)) {
@@ -180,7 +187,7 @@ void shade_hits(const SampleContext& c, int depth, int first, std::uint64_t acti
         store(weight, shade.weight + at);
         store(m.ambient * Real(0.2f), shade.base + at);
         store_for_lights(hit, s, m, offset, length, g, shade);
-        if (depth == depth_limit) continue;
+        if (depth == depth_limit || !spawns(hit, m)) continue;
         const Int pixel = depth == 0 ? lane_numbers() + Int(at) : load(queue.pixel + q);
         spawn(hit, s, m, offset, length, weight, load(queue.medium + q), pixel, next, c.counts);
     }
