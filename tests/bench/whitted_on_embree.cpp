@@ -34,6 +34,7 @@ struct Surface {
     const SurfaceRecord* material;
     float length, weight, offset, refraction_index;
     bool sphere;
+    glm::vec3 lift{0};  // from a smooth triangle to where its shadow rays end
     glm::vec3 local{0};
 };
 
@@ -137,6 +138,7 @@ class TileRenderer {
         Surface s{};
         s.position = ray.origin + hit.t * ray.direction;
         s.refraction_index = 1;
+        float error = 0;  // of the position, where it was computed from larger numbers
         std::int32_t surface = 0;
         const PlaneRecord* plane = nullptr;
         bool smooth = false;
@@ -144,6 +146,7 @@ class TileRenderer {
             const TriangleRecord& triangle = scene_.triangles[static_cast<std::size_t>(hit.id)];
             s.geometric_normal = vec(triangle.normal);
             surface = triangle.surface;
+            error = scene_.surfaces[static_cast<std::size_t>(surface)].triangle_error;
             smooth = hit.id < scene_.smooth_count;
         } else if (hit.id < scene_.triangle_count + scene_.sphere_count) {
             const SphereRecord& sphere = scene_.spheres[static_cast<std::size_t>(hit.id - scene_.triangle_count)];
@@ -151,6 +154,8 @@ class TileRenderer {
             s.geometric_normal = glm::normalize(s.position - vec(sphere.center));
             s.position = vec(sphere.center) + sphere.radius * s.geometric_normal;
             s.refraction_index = sphere.refraction_index;
+            const glm::vec3 center = glm::abs(vec(sphere.center));
+            error = sphere_offset * (std::max(center.x, std::max(center.y, center.z)) + sphere.radius);
             surface = sphere.surface;
         } else {
             plane = &scene_.planes[static_cast<std::size_t>(hit.id - scene_.triangle_count - scene_.sphere_count)];
@@ -162,7 +167,20 @@ class TileRenderer {
             const float* n = scene_.vertex_normals[static_cast<std::size_t>(hit.id)].n;
             const glm::vec3 sum = (1 - hit.u - hit.v) * glm::vec3(n[0], n[1], n[2]) +
                                   hit.u * glm::vec3(n[3], n[4], n[5]) + hit.v * glm::vec3(n[6], n[7], n[8]);
-            if (glm::dot(sum, sum) > 1e-12f) s.normal = glm::normalize(sum);
+            if (glm::dot(sum, sum) > 1e-12f) {
+                const glm::vec3 facing = s.normal;
+                const float side = glm::dot(sum, facing) < 0 ? -1.0f : 1.0f;
+                s.normal = side * glm::normalize(sum);
+                const TriangleCorners& corners = scene_.smooth_corners[static_cast<std::size_t>(hit.id)];
+                const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+                glm::vec3 lift(0);
+                for (int i = 0; i < 3; ++i) {
+                    const glm::vec3 corner_normal(n[3 * i], n[3 * i + 1], n[3 * i + 2]);
+                    const float height = side * glm::dot(s.position - corners.p[i], corner_normal);
+                    lift -= weights[i] * std::min(height, 0.0f) * side * corner_normal;
+                }
+                if (glm::dot(lift, facing) > 0) s.lift = lift;
+            }
         }
         s.material = &scene_.surfaces[static_cast<std::size_t>(surface)];
         s.color = color_of(s, plane);
@@ -170,7 +188,7 @@ class TileRenderer {
         s.length = ray.length + hit.t;
         s.weight = ray.weight;
         const glm::vec3 reach = glm::abs(s.position);
-        s.offset = surface_offset * std::max(std::max(reach.x, reach.y), std::max(reach.z, hit.t));
+        s.offset = std::max(error, surface_offset * std::max(std::max(reach.x, reach.y), std::max(reach.z, hit.t)));
         surfaces_.push_back(s);
         pixels_.push_back(ray.pixel);
         if (depth < last_depth) spawn(ray, s);
@@ -272,8 +290,9 @@ class TileRenderer {
                                                                     : std::pow(mirrored, float(material.shininess)));
         }
         if (!(diffuse > 0 && s.color != glm::vec3(0)) && !(specular > 0)) return glm::vec3(0);
-        const float side = std::copysign(s.offset, glm::dot(s.geometric_normal, to_light));
-        to_surface = side * s.geometric_normal - to_light;
+        const glm::vec3 towards = s.lift == glm::vec3(0) ? to_light : s.view;
+        const float side = std::copysign(s.offset, glm::dot(s.geometric_normal, towards));
+        to_surface = side * s.geometric_normal - to_light + s.lift;
         return std::exp(-attenuation * (s.length + distance)) * vec(light.radiance) * (diffuse * s.color + specular);
     }
 

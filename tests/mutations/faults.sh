@@ -108,5 +108,22 @@ fault "rows of an image are columns" tracer/kernels/shading/texture.h \
     'cell(a - floor(a), rows) * columns' 'cell(a - floor(a), columns) * rows' \
     shading_tests 'Texturing.ImageShowsTheTexelUnderEveryPoint'
 fault "vertex normals at the wrong corners" tracer/kernels/shading/surface.h \
-    'mul_add(corner(2), hit.v, mul_add(corner(1), hit.u,' 'mul_add(corner(1), hit.v, mul_add(corner(2), hit.u,' \
+    'mul_add(n2, hit.v, mul_add(n1, hit.u,' 'mul_add(n1, hit.v, mul_add(n2, hit.u,' \
     shading_tests 'SmoothTriangle.*'
+
+# Rounding and smooth meshes.
+fault "rays start too near to large balls" tracer/kernels/shading/surface.h \
+    'max(s.offset, reach * Real(sphere_offset))' 's.offset' \
+    shading_tests 'Rounding.LeavesNoSpecksOnBallsOfAnySize'
+fault "rays start too near to large triangles" tracer/compiled/compile.cpp \
+    'static_cast<float>(reach) * triangle_offset' 'static_cast<float>(reach) * 0.0f' \
+    shading_tests 'Rounding.LeavesNoSpecksOnTrianglesOfAnySize'
+fault "scenes stay where they are" tracer/compiled/local_origin.cpp \
+    'largest(middle) > far_away * largest(upper - lower)' 'false' \
+    shading_tests 'Rounding.AScenesPlaceDoesNotChangeItsPicture'
+fault "inward normals stay inward" tracer/kernels/shading/surface.h \
+    'select(inward, -outward, outward)' 'outward' \
+    shading_tests 'FacetedBall.LooksTheSameWhicheverWayItIsWound'
+fault "shadow rays start on flat faces" tracer/kernels/shading/surface.h \
+    'select(known & (dot(lift, facing) > zero), lift, s.lift)' 's.lift' \
+    shading_tests 'FacetedBall.IsLitWhereItsNormalsFaceTheLight'

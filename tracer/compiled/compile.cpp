@@ -6,11 +6,14 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <unordered_map>
 
 #include "tracer/compiled/compile.h"
+#include "tracer/compiled/local_origin.h"
 #include "tracer/compiled/mesh_placement.h"
 #include "tracer/files/load.h"
+#include "tracer/ground/numeric.h"
 #include "tracer/ground/stopwatch.h"
 
 namespace raywalk {
@@ -98,6 +101,12 @@ void set_plane_axes(const glm::dvec3& normal, PlaneRecord& record) {
     copy(turned(v), record.v_axis);
 }
 
+// Where the texture's pattern begins again, in both coordinates: whole numbers, as densities and sizes are.
+double period_of(const Texture& texture) {
+    const auto* image = std::get_if<ImageTexture>(&texture.pattern);
+    return image != nullptr ? image->size : 2.0;
+}
+
 void compile_planes(const Scene& scene, SurfaceTable& surfaces, CompiledScene& compiled) {
     for (const Plane& plane : scene.planes) {
         PlaneRecord record{};
@@ -105,6 +114,12 @@ void compile_planes(const Scene& scene, SurfaceTable& surfaces, CompiledScene& c
         record.offset = limited(plane.offset);
         record.surface = surfaces.index_of(plane.texture);
         set_plane_axes(plane.normal, record);
+        const auto along = [&](const float(&axis)[3]) {
+            const double shift = glm::dot(compiled.origin, glm::dvec3(axis[0], axis[1], axis[2]));
+            return static_cast<float>(std::fmod(shift, period_of(plane.texture)));
+        };
+        record.shift[0] = along(record.u_axis);
+        record.shift[1] = along(record.v_axis);
         compiled.planes.push_back(record);
     }
     compiled.plane_count = static_cast<std::int32_t>(compiled.planes.size());
@@ -175,6 +190,17 @@ void compile_triangles(const Scene& scene, const std::map<std::filesystem::path,
         copy(geometric_normal(a, b, c), compiled.triangles[count + f].normal);
         compiled.triangles[count + f].surface = surfaces.index_of(face.texture);
     }
+    compiled.smooth_corners.assign(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(smooth_count));
+    const auto note_error = [&](std::int32_t surface, double reach) {
+        float& error = surfaces.records[static_cast<std::size_t>(surface)].triangle_error;
+        error = std::max(error, static_cast<float>(reach) * triangle_offset);
+    };
+    const auto farthest = [](const glm::dvec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); };
+    for (const Mesh& mesh : scene.meshes)
+        note_error(surfaces.index_of(mesh.texture), farthest(mesh.center) + mesh.radius);
+    for (const Face& face : scene.faces)
+        for (const glm::dvec3& corner : {face.a, face.b, face.c})
+            note_error(surfaces.index_of(face.texture), farthest(corner));
 }
 
 // Radiance that sums of many samples can hold in single precision.
@@ -235,12 +261,18 @@ void compile_images(const Scene& scene, std::map<std::filesystem::path, Image>& 
 
 }  // namespace
 
-CompiledScene compile(const Scene& scene, const CompileOptions& options, const Limits& limits,
+CompiledScene compile(const Scene& given, const CompileOptions& options, const Limits& limits,
                       std::vector<Diagnostic>& warnings, CompileStatistics* statistics) {
     const Stopwatch watch;
+    const glm::dvec3 origin = local_origin(given);
+    warn_of_small_shapes(given, origin, warnings);
+    std::optional<Scene> moved;
+    if (origin != glm::dvec3(0)) moved = moved_to(origin, given);
+    const Scene& scene = moved ? *moved : given;
     // Images are decoded while meshes are read and the tree is built.
     auto images_to_come = std::async(std::launch::async, [&] { return read_images(scene, limits); });
     CompiledScene compiled;
+    compiled.origin = origin;
     compile_lights(scene, limits, compiled);
 
     SceneFiles<TriangleMesh> meshes = read_meshes(scene, limits);

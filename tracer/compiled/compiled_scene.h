@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "tracer/compiled/hierarchy.h"
@@ -18,10 +19,11 @@ struct alignas(64) SurfaceRecord {
     float ambient, specular, reflection, transmission;
     std::int32_t shininess;
     Pattern pattern;
-    float color[3];      // pure
-    float scale;         // grid: density; image: 1 / size
-    std::int32_t image;  // image: index into images, else 0
-    std::int32_t padding[5];
+    float color[3];        // pure
+    float scale;           // grid: density; image: 1 / size
+    std::int32_t image;    // image: index into images, else 0
+    float triangle_error;  // of hits on triangles with this surface: see triangle_offset in numeric.h
+    std::int32_t padding[4];
 };
 
 // One triangle's geometric unit normal (any side) and its surface.
@@ -43,14 +45,15 @@ struct alignas(32) SphereRecord {
     std::int32_t padding[2];
 };
 
-// { p : p . normal = offset }; u = p . u_axis, v = p . v_axis (spec 4.6).
+// { p : p . normal = offset }; u = p . u_axis + shift[0], v = p . v_axis + shift[1] (spec 4.6).
 struct alignas(64) PlaneRecord {
     float normal[3];
     float offset;
     float u_axis[3];
     std::int32_t surface;
     float v_axis[3];
-    std::int32_t padding[5];
+    float shift[2];  // of the scene's zero from the local origin, less whole periods of the texture
+    std::int32_t padding[3];
 };
 
 // Points of light: position and intensity * colour (already divided by n * n for an area light).
@@ -68,6 +71,7 @@ struct ImageRecord {
 };
 
 struct CompiledScene {
+    glm::dvec3 origin{0};  // the scene's coordinates of the zero of all that follows: see local_origin.h
     std::int32_t triangle_count = 0, sphere_count = 0, plane_count = 0;
     std::int32_t smooth_count = 0;  // triangles [0, smooth_count) have vertex_normals
 
@@ -75,6 +79,7 @@ struct CompiledScene {
 
     AlignedVector<TriangleRecord> triangles;
     AlignedVector<VertexNormals> vertex_normals;
+    AlignedVector<TriangleCorners> smooth_corners;  // of the same triangles
     AlignedVector<SphereRecord> spheres;
     AlignedVector<PlaneRecord> planes;
     AlignedVector<SurfaceRecord> surfaces;

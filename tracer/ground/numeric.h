@@ -8,6 +8,13 @@ namespace raywalk {
 // leaves room for grazing rays (Waechter and Binder, Ray Tracing Gems 6, offset by the same reasoning).
 inline constexpr float surface_offset = 2e-6f;
 
+// Where a hit is computed from numbers that are larger than itself, their rounding decides. A hit on a sphere is
+// centre + radius * normal, off by 2 e of |centre| + radius, and a ray that leaves the sphere meets it again where
+// rounding in the discriminant, 4 e of the radius, outweighs the distance between. The plane of a triangle is off by 3
+// e of its farthest coordinate. Offsets are at least this fraction of those.
+inline constexpr float sphere_offset = 8e-7f;
+inline constexpr float triangle_offset = 4e-7f;
+
 // Shadow rays run from the light to the (offset) point over t in (0, 1); they stop short of it by this much.
 inline constexpr float shadow_t_max = 1.0f - 4e-6f;
 

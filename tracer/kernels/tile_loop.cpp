@@ -85,15 +85,9 @@ HWY_INLINE HitLanes load_hits(const RayQueue& queue, int first, std::uint64_t ac
     return h;
 }
 
-// How far from their surface rays start.
-HWY_INLINE Real offset_from(const HitLanes& hit, const SurfaceLanes& s) {
-    const Real reach = max(max(abs(s.position.x), abs(s.position.y)), max(abs(s.position.z), hit.t));
-    return reach * Real(surface_offset);
-}
-
 // What lights need to know of a group's hits.
-HWY_INLINE void store_for_lights(const HitLanes& hit, const SurfaceLanes& s, const MaterialLanes& m, Real offset,
-                                 Real length, int group, ShadeBatch& shade) {
+HWY_INLINE void store_for_lights(const HitLanes& hit, const SurfaceLanes& s, const MaterialLanes& m, Real length,
+                                 int group, ShadeBatch& shade) {
     const int at = group * lanes;
     const Real zero(0.0f);
     store3(s.position, shade.position, at);
@@ -104,7 +98,10 @@ HWY_INLINE void store_for_lights(const HitLanes& hit, const SurfaceLanes& s, con
     store(m.specular, shade.specular_weight + at);
     store(m.shininess, shade.shininess + at);
     store(length, shade.length + at);
-    store(offset, shade.offset + at);
+    store(s.offset, shade.offset + at);
+    const Mask lifted = hit.active & (max(abs(s.lift.x), max(abs(s.lift.y), abs(s.lift.z))) > zero);
+    if (any(s.smooth)) store3(s.lift, shade.lift, at);
+    shade.lifted |= rays_of(bits(lifted), group);
     const Mask colored = max(m.color.x, max(m.color.y, m.color.z)) > zero, shiny = m.specular > zero;
     store(select(colored, Real(1.0f), zero), shade.colored + at);
     shade.lit |= rays_of(bits(hit.active & (colored | shiny)), group);
@@ -118,9 +115,8 @@ HWY_INLINE bool spawns(const HitLanes& hit, const MaterialLanes& m) {
 
 // Queues the mirrored and refracted rays of a group's hits. Not inlined: its registers would be spilled in every loop
 // over hits, where few reflect (cornell_box 1.2 to 1.3 times as fast without).
-HWY_NOINLINE void spawn(const HitLanes& hit, const SurfaceLanes& s, const MaterialLanes& m, const Real& offset,
-                        const Real& length, const Real& weight, const Real& medium, const Int& pixel, RayQueue& next,
-                        RayCounts& counts) {
+HWY_NOINLINE void spawn(const HitLanes& hit, const SurfaceLanes& s, const MaterialLanes& m, const Real& length,
+                        const Real& weight, const Real& medium, const Int& pixel, RayQueue& next, RayCounts& counts) {
     const Real zero(0.0f);
     const Mask reflecting = hit.active & (m.reflection > zero), transmitting = hit.active & (m.transmission > zero);
     if (any(reflecting)) {
@@ -130,13 +126,12 @@ HWY_NOINLINE void spawn(const HitLanes& hit, const SurfaceLanes& s, const Materi
         rays.weight = weight * m.reflection;
         rays.medium = medium;
         rays.mirror = select(s.sphere | s.smooth, Int(-1), hit.id);
-        enqueue(rays, s, offset, length, pixel, next);
+        enqueue(rays, s, length, pixel, next);
         counts.reflection += static_cast<std::uint64_t>(std::popcount(bits(reflecting)));
     }
     if (any(transmitting)) {
         Mask total;
-        enqueue(refracted(hit, s, transmitting, weight * m.transmission, medium, total), s, offset, length, pixel,
-                next);
+        enqueue(refracted(hit, s, transmitting, weight * m.transmission, medium, total), s, length, pixel, next);
         const auto reflected = static_cast<std::uint64_t>(std::popcount(bits(total)));
         counts.reflection += reflected;
         counts.refraction += static_cast<std::uint64_t>(std::popcount(bits(transmitting))) - reflected;
@@ -172,7 +167,7 @@ void shade_hits(const SampleContext& c, int depth, int first, std::uint64_t acti
     const RayQueue& queue = c.scratch.queues[depth & 1];
     RayQueue& next = c.scratch.queues[(depth + 1) & 1];
     ShadeBatch& shade = c.scratch.shade;
-    shade.lit = 0;
+    shade.lit = shade.lifted = 0;
     shade.all_fifth_powers = true;
     std::uint32_t hit_lanes[beam_rays / lanes];
     for (int g = 0; g < beam_rays / lanes; ++g) {
@@ -183,13 +178,12 @@ void shade_hits(const SampleContext& c, int depth, int first, std::uint64_t acti
         const SurfaceLanes s = surface_at(scene, hit);
         const MaterialLanes m = material_at(scene, hit, s);
         const Real weight = load(queue.weight + q), length = load(queue.length + q) + hit.t;
-        const Real offset = offset_from(hit, s);
         store(weight, shade.weight + at);
         store(m.ambient * Real(0.2f), shade.base + at);
-        store_for_lights(hit, s, m, offset, length, g, shade);
+        store_for_lights(hit, s, m, length, g, shade);
         if (depth == depth_limit || !spawns(hit, m)) continue;
         const Int pixel = depth == 0 ? lane_numbers() + Int(at) : load(queue.pixel + q);
-        spawn(hit, s, m, offset, length, weight, load(queue.medium + q), pixel, next, c.counts);
+        spawn(hit, s, m, length, weight, load(queue.medium + q), pixel, next, c.counts);
     }
     light_hits(scene, c.job.settings, c.sample, depth == 0, shade, c.scratch.shadow, c.counts);
     const std::int32_t* pixel = depth == 0 ? nullptr : queue.pixel + first;

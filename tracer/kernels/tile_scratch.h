@@ -17,16 +17,18 @@ struct alignas(64) ShadeBatch {
     float colored[beam_rays];  // 0 where the colour is black, else 1
     float specular_weight[beam_rays];
     std::int32_t shininess[beam_rays];
-    float length[beam_rays];  // of the path from the eye to the hit
-    float offset[beam_rays];  // of spawned rays from the surface
-    float base[beam_rays];    // radiance that needs no light
-    float weight[beam_rays];  // of the hit in its pixel
+    float length[beam_rays];   // of the path from the eye to the hit
+    float offset[beam_rays];   // of spawned rays from the surface
+    float lift[3][beam_rays];  // of `lifted` hits: SurfaceLanes::lift
+    float base[beam_rays];     // radiance that needs no light
+    float weight[beam_rays];   // of the hit in its pixel
 
     float diffuse[beam_rays], specular[beam_rays];          // from the light point at hand
     float diffuse_sum[beam_rays], specular_sum[beam_rays];  // from the light at hand
     float local[3][beam_rays];                              // from all lights
 
     std::uint64_t lit;      // hits that can receive light
+    std::uint64_t lifted;   // those of smooth triangles that lie below the curved surface
     bool all_fifth_powers;  // no other shininess among them
 };
 

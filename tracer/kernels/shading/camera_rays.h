@@ -30,6 +30,7 @@ struct TileCamera {
 
 inline TileCamera make_tile_camera(const TileJob& job) {
     const Camera& camera = *job.camera;
+    const glm::dvec3 eye = camera.eye - job.scene->origin;
     TileCamera c{};
     c.x = job.x;
     c.y = job.y;
@@ -44,10 +45,10 @@ inline TileCamera make_tile_camera(const TileJob& job) {
     for (int axis = 0; axis < 3; ++axis) {
         const double corner = camera.direction[axis] + camera.right[axis] * (pixel_width * job.x - half_width) +
                               camera.up[axis] * (half_height - pixel_height * job.y);
-        c.corner[axis] = static_cast<float>(c.orthographic ? camera.eye[axis] + corner : corner);
+        c.corner[axis] = static_cast<float>(c.orthographic ? eye[axis] + corner : corner);
         c.right[axis] = static_cast<float>(camera.right[axis] * pixel_width);
         c.down[axis] = static_cast<float>(camera.up[axis] * -pixel_height);
-        c.eye[axis] = static_cast<float>(camera.eye[axis]);
+        c.eye[axis] = static_cast<float>(eye[axis]);
         c.direction[axis] = static_cast<float>(camera.direction[axis]);
         c.aperture_right[axis] = static_cast<float>(camera.right[axis] * camera.aperture_radius);
         c.aperture_up[axis] = static_cast<float>(camera.up[axis] * camera.aperture_radius);

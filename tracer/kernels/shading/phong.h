@@ -55,10 +55,16 @@ HWY_INLINE std::uint64_t face_light(const float light[3], ShadeBatch& shade, Bea
         store(specular, shade.specular + at);
         receiving |= rays_of(bits(diffuse + specular > Real(0.0f)) & lit, g);
 
-        // The shadow ray ends off the surface, on the light's side of it.
+        // The shadow ray ends off the surface, on the light's side of it; that of a smooth triangle on the curved
+        // surface, which is seen from the eye's side only.
         const Vec3 geometric_normal = load3(shade.geometric_normal, at);
-        const Real offset = copy_sign(load(shade.offset + at), dot(geometric_normal, to_light));
-        store3(mul_add(geometric_normal, offset, -to_light), shadow.direction, at);
+        Vec3 to_end = -to_light, towards = to_light;
+        if (const std::uint32_t lifted = lanes_of(shade.lifted, g); lifted != 0) {
+            to_end = select(mask_of_bits(lifted), to_end + load3(shade.lift, at), to_end);
+            towards = select(mask_of_bits(lifted), view, towards);
+        }
+        const Real offset = copy_sign(load(shade.offset + at), dot(geometric_normal, towards));
+        store3(mul_add(geometric_normal, offset, to_end), shadow.direction, at);
     }
     return receiving;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "tracer/compiled/compiled_scene.h"
+#include "tracer/ground/numeric.h"
 #include "tracer/kernels/lanes/math.h"
 #include "tracer/kernels/lanes/records.h"
 #include "tracer/kernels/lanes/vectors.h"
@@ -25,6 +26,8 @@ struct SurfaceLanes {
     Vec3 position;
     Vec3 geometric_normal;  // unit; outward for spheres, else any side
     Vec3 normal;            // unit; for shading
+    Real offset;            // how far from the surface rays start: beyond the error of the position
+    Vec3 lift;              // from a smooth triangle up to the curved surface that its normals mean, else 0
     Int surface;            // index into CompiledScene::surfaces
     Mask sphere, plane, smooth;
     Real refraction_index;  // spheres: inside
@@ -34,14 +37,29 @@ HWY_INLINE Vec3 turned_against(Vec3 direction, Vec3 normal) {
     return select(dot(normal, direction) > Real(0.0f), -normal, normal);
 }
 
-// The interpolated vertex normal; the geometric one where the vertex normals cancel.
-HWY_INLINE Vec3 smooth_normal(const CompiledScene& scene, const HitLanes& hit, Mask smooth, Vec3 geometric_normal) {
-    const Records normals(scene.vertex_normals.data(), smooth, hit.id);
-    const auto corner = [&](int i) HWY_ATTR { return normals.vector(sizeof(float) * 3 * static_cast<std::size_t>(i)); };
-    const Vec3 sum = mul_add(corner(2), hit.v, mul_add(corner(1), hit.u, corner(0) * (Real(1.0f) - hit.u - hit.v)));
-    const Real squared_length = dot(sum, sum);
-    return select(smooth & (squared_length > Real(1e-12f)), sum * (Real(1.0f) / sqrt(squared_length)),
-                  geometric_normal);
+// The interpolated vertex normal, on the side of the face that the ray comes from (s.normal before); the face's where
+// the vertex normals cancel. And the lift: the point is projected onto the plane of each vertex and its normal, and the
+// projections above it are interpolated (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021).
+HWY_INLINE void make_smooth(const CompiledScene& scene, const HitLanes& hit, SurfaceLanes& s) {
+    const Records normals(scene.vertex_normals.data(), s.smooth, hit.id);
+    const Records corners(scene.smooth_corners.data(), s.smooth, hit.id);
+    const auto corner = [](const Records& of, int i)
+                            HWY_ATTR { return of.vector(sizeof(float) * 3 * static_cast<std::size_t>(i)); };
+    const Vec3 n0 = corner(normals, 0), n1 = corner(normals, 1), n2 = corner(normals, 2);
+    const Real w0 = Real(1.0f) - hit.u - hit.v;
+    const Vec3 sum = mul_add(n2, hit.v, mul_add(n1, hit.u, n0 * w0));
+    const Real squared_length = dot(sum, sum), zero(0.0f);
+    const Mask known = s.smooth & (squared_length > Real(1e-12f));
+    const Mask inward = dot(sum, s.normal) < zero;
+    const Vec3 facing = s.normal, outward = sum * (Real(1.0f) / sqrt(squared_length));
+    s.normal = select(known, select(inward, -outward, outward), facing);
+
+    const auto projection = [&](int i, Vec3 n, Real weight) HWY_ATTR {
+        const Real height = dot(s.position - corner(corners, i), n);
+        return n * (weight * select(inward, max(height, zero), min(height, zero)));
+    };
+    const Vec3 lift = -(projection(0, n0, w0) + projection(1, n1, hit.u) + projection(2, n2, hit.v));
+    s.lift = select(known & (dot(lift, facing) > zero), lift, s.lift);
 }
 
 // Where the hits are and how the surface lies there. Lanes that are not active hold anything.
@@ -50,6 +68,8 @@ HWY_INLINE SurfaceLanes surface_at(const CompiledScene& scene, const HitLanes& h
     s.position = mul_add(hit.direction, hit.t, hit.origin);
     s.refraction_index = Real(1.0f);
     s.surface = Int(0);
+    s.offset = Real(surface_offset) * max(max(abs(s.position.x), abs(s.position.y)), max(abs(s.position.z), hit.t));
+    s.lift = Vec3{Real(0.0f), Real(0.0f), Real(0.0f)};
     s.geometric_normal = s.normal = Vec3{Real(0.0f), Real(0.0f), Real(1.0f)};
     const Int first_sphere(scene.triangle_count), first_plane(scene.triangle_count + scene.sphere_count);
     const Mask triangle = hit.active & (hit.id < first_sphere);
@@ -61,6 +81,8 @@ HWY_INLINE SurfaceLanes surface_at(const CompiledScene& scene, const HitLanes& h
         const Records records(scene.triangles.data(), triangle, hit.id);
         s.geometric_normal = records.vector(offsetof(TriangleRecord, normal));
         s.surface = records.integer(offsetof(TriangleRecord, surface));
+        const Records surfaces(scene.surfaces.data(), triangle, s.surface);
+        s.offset = max(s.offset, select(triangle, surfaces.real(offsetof(SurfaceRecord, triangle_error)), Real(0.0f)));
     }
     if (any(s.plane)) {
         const Records records(scene.planes.data(), s.plane, hit.id - first_plane);
@@ -76,14 +98,16 @@ HWY_INLINE SurfaceLanes surface_at(const CompiledScene& scene, const HitLanes& h
         const Vec3 outward =
             select(squared_distance > Real(1e-36f), away * (Real(1.0f) / sqrt(squared_distance)), -hit.direction);
         // Back onto the sphere: the hit distance is good to a few e of the ray's length, the radius is exact.
-        s.position =
-            select(s.sphere, mul_add(outward, records.real(offsetof(SphereRecord, radius)), center), s.position);
+        const Real radius = records.real(offsetof(SphereRecord, radius));
+        s.position = select(s.sphere, mul_add(outward, radius, center), s.position);
+        const Real reach = max(abs(center.x), max(abs(center.y), abs(center.z))) + radius;
+        s.offset = select(s.sphere, max(s.offset, reach * Real(sphere_offset)), s.offset);
         s.geometric_normal = select(s.sphere, outward, s.geometric_normal);
         s.surface = select(s.sphere, records.integer(offsetof(SphereRecord, surface)), s.surface);
         s.refraction_index = select(s.sphere, records.real(offsetof(SphereRecord, refraction_index)), Real(1.0f));
     }
     s.normal = turned_against(hit.direction, s.geometric_normal);
-    if (any(s.smooth)) s.normal = smooth_normal(scene, hit, s.smooth, s.normal);
+    if (any(s.smooth)) make_smooth(scene, hit, s);
     return s;
 }
 
@@ -95,8 +119,10 @@ HWY_INLINE SurfaceCoordinates coordinates_at(const CompiledScene& scene, const H
     SurfaceCoordinates c = {Real(0.0f), Real(0.0f)};
     if (any(s.plane)) {
         const Records records(scene.planes.data(), s.plane, hit.id - Int(scene.triangle_count + scene.sphere_count));
-        c.u = dot(s.position, records.vector(offsetof(PlaneRecord, u_axis)));
-        c.v = dot(s.position, records.vector(offsetof(PlaneRecord, v_axis)));
+        c.u =
+            dot(s.position, records.vector(offsetof(PlaneRecord, u_axis))) + records.real(offsetof(PlaneRecord, shift));
+        c.v = dot(s.position, records.vector(offsetof(PlaneRecord, v_axis))) +
+              records.real(offsetof(PlaneRecord, shift) + sizeof(float));
     }
     if (any(s.sphere)) {
         const Real per_turn(0.159154943f);

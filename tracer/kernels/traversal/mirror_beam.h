@@ -56,6 +56,13 @@ inline void take_hits_of(std::uint64_t rays, const BeamHits& from, BeamHits& to)
     }
 }
 
+// SurfaceRecord::triangle_error of a planar mirror, 0 of a plane.
+inline float mirror_error(const CompiledScene& scene, std::int32_t mirror) {
+    if (mirror >= scene.triangle_count) return 0;
+    const std::int32_t surface = scene.triangles[static_cast<std::size_t>(mirror)].surface;
+    return scene.surfaces[static_cast<std::size_t>(surface)].triangle_error;
+}
+
 // Intersects those of the queue's rays from `first` on that planar mirrors made, mirror by mirror; they get the eye's
 // image as their origin and length 0. Returns which rays that were; scratch.hits has their hits.
 inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float eye[3], RayQueue& queue, int first,
@@ -88,7 +95,8 @@ inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float 
             store(d.y, beam.direction[1] + at);
             store(d.z, beam.direction[2] + at);
             // They start as far off the mirror as rays that go alone.
-            const Real offset = Real(surface_offset) * max(max(abs(o.x), abs(o.y)), max(abs(o.z), length));
+            const Real reach = max(max(abs(o.x), abs(o.y)), max(abs(o.z), length));
+            const Real offset = max(Real(surface_offset) * reach, Real(mirror_error(scene, mirror)));
             const Real steepness = max(abs(dot(d, splat3(normal))), Real(1e-12f));
             store(length + offset / steepness, beam.t_min + at);
             store(Real(farthest), beam.t_max + at);

@@ -44,11 +44,10 @@ HWY_INLINE SpawnedRays refracted(const HitLanes& hit, const SurfaceLanes& s, Mas
     return rays;
 }
 
-// Appends to the queue. They start `offset` off the surface, on the side to which they go.
-HWY_INLINE void enqueue(const SpawnedRays& rays, const SurfaceLanes& s, Real offset, Real length, Int pixel,
-                        RayQueue& queue) {
+// Appends to the queue. They start s.offset off the surface, on the side to which they go.
+HWY_INLINE void enqueue(const SpawnedRays& rays, const SurfaceLanes& s, Real length, Int pixel, RayQueue& queue) {
     const int at = queue.size;
-    const Real side = copy_sign(offset, dot(rays.direction, s.geometric_normal));
+    const Real side = copy_sign(s.offset, dot(rays.direction, s.geometric_normal));
     const Vec3 origin = mul_add(s.geometric_normal, side, s.position);
     compress_store(origin.x, rays.active, queue.origin[0] + at);
     compress_store(origin.y, rays.active, queue.origin[1] + at);
