@@ -3,13 +3,13 @@
 # configured with the preset asan or tsan; the scenes' files are those that another preset made.
 # Each executable of tests runs all of its tests in one process: starting one costs more there than most tests do.
 # Left out are the tests of texts and pictures that ship (house_tests), which run little of the program, and those that
-# kill it (kill_tests); and, of the others, what runs the code of smaller tests again for minutes. Under the thread
+# kill it (kill_tests); what preloads a library (HelperCores), which sanitizers want to be first; and, of the others, what runs the code of smaller tests again for minutes. Under the thread
 # sanitizer also what has no threads: images are read by helper programs.
 set -euo pipefail
 build=$(realpath "$1")
 export build
 export left_out='*.BuildWorkGrowsAsNLogN:Hierarchies.OfALargeScene*:Hierarchies.HoldAMillion*:*/many_lights'
-left_out+=':Widths.PicturesAreTheSameToTheEye*:DepthOfField.BlurHasTheRadius*'
+left_out+=':HelperCores.*:Widths.PicturesAreTheSameToTheEye*:DepthOfField.BlurHasTheRadius*'
 # The slowest first.
 executables=(files_tests command_line_tests shading_tests traversal_tests shipped_tests hierarchy_tests
     rendering_tests window_tests app_tests compiled_tests ground_tests)

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <new>
 #include <string>
 
@@ -51,10 +52,19 @@ class Input {
     std::size_t size_ = 0;
 };
 
-// The memory that this process may take: `memory_bytes` and that of so many pixels, now or when it allows itself more.
-void limit_memory(std::uint64_t memory_bytes, std::uint64_t pixels, std::uint64_t most_pixels) {
+// Bytes of data that this process has: its libraries', their threads' stacks. 0 where /proc does not say.
+std::uint64_t memory_in_use() {
+    std::ifstream statistics("/proc/self/statm");
+    std::uint64_t size = 0, resident = 0, shared = 0, text = 0, library = 0, data = 0;
+    statistics >> size >> resident >> shared >> text >> library >> data;
+    return statistics ? data * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+// The memory that this process may take beside what it had `before`: `memory_bytes` and that of so many pixels, now or
+// when it allows itself more.
+void limit_memory(std::uint64_t before, std::uint64_t memory_bytes, std::uint64_t pixels, std::uint64_t most_pixels) {
     if (memory_bytes == 0 || RAYWALK_SANITIZED) return;  // sanitizers map memory of their own
-    const auto with = [&](std::uint64_t count) { return memory_bytes + memory_of_a_pixel * count; };
+    const auto with = [&](std::uint64_t count) { return before + memory_bytes + memory_of_a_pixel * count; };
     const rlimit both{with(std::min(pixels, most_pixels)), with(most_pixels)};
     setrlimit(RLIMIT_DATA, &both);
 }
@@ -70,9 +80,10 @@ bool write_all(const void* data, std::size_t size) {
     return true;
 }
 
-int answer(ImageReply::Status status, std::uint64_t width, std::uint64_t height, const void* body, std::size_t size) {
+int answer(ImageReply::Status status, std::uint64_t width, std::uint64_t height, const void* body, std::size_t size,
+           std::uint32_t clipped = 0) {
     const ImageReply reply{ImageReply::magic_number, status, static_cast<std::uint32_t>(width),
-                           static_cast<std::uint32_t>(height)};
+                           static_cast<std::uint32_t>(height), clipped};
     return write_all(&reply, sizeof reply) && write_all(body, size) ? 0 : 1;
 }
 
@@ -84,22 +95,24 @@ int answer_failure(const std::string& reason) {
 int decode(ImageFormat format, std::string_view input, std::uint64_t most_pixels, std::uint64_t memory_bytes) {
     // Until the header is read, and for a small picture always: a damaged one may want gigabytes for a few pixels.
     constexpr std::uint64_t few_pixels = 1 << 22;
-    limit_memory(memory_bytes, few_pixels, most_pixels);
-    use_one_thread();  // whose stacks would count
+    use_one_thread();  // before memory is counted: libraries have started their threads, one for each core, by now
+    const std::uint64_t before = memory_in_use();
+    limit_memory(before, memory_bytes, few_pixels, most_pixels);
     std::uint64_t width = 0, height = 0;
     bool too_large = false;
     const ImageRefusal refusal = [&](std::uint64_t w, std::uint64_t h) -> std::string {
         width = w;
         height = h;
         too_large = w * h > most_pixels;
-        if (!too_large) limit_memory(memory_bytes, std::max(w * h, few_pixels), most_pixels);
+        if (!too_large) limit_memory(before, memory_bytes, std::max(w * h, few_pixels), most_pixels);
         return too_large ? "too large" : "";
     };
     Image image;
     const std::string problem = decode_pixels(format, {input.data(), input.size()}, refusal, image);
     if (too_large) return answer(ImageReply::too_large, width, height, nullptr, 0);
     if (!problem.empty()) return answer_failure(problem);
-    return answer(ImageReply::done, width, height, image.texels.data(), image.texels.size() * sizeof image.texels[0]);
+    return answer(ImageReply::done, static_cast<std::uint64_t>(image.width), static_cast<std::uint64_t>(image.height),
+                  image.texels.data(), image.texels.size() * sizeof image.texels[0], image.clipped);
 }
 
 int encode(std::string_view input, int width, int height) {

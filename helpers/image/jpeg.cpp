@@ -7,9 +7,13 @@
 #include <cstdio>
 // clang-format on
 
+#include <algorithm>
 #include <array>
 #include <csetjmp>
 #include <cstdlib>
+#include <string_view>
+
+#include "helpers/image/orientation.h"
 
 namespace raywalk {
 
@@ -39,6 +43,8 @@ void on_message(j_common_ptr jpeg, int level) {
 // would take minutes. Programs write 10 or 20, and 64 when they try hard.
 constexpr int most_scans = 100;
 
+constexpr int exif_marker = JPEG_APP0 + 1;  // where cameras say how they were held
+
 void on_progress(j_common_ptr jpeg) {
     if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= most_scans) return;
     auto* errors = reinterpret_cast<JpegErrors*>(jpeg->err);
@@ -59,6 +65,7 @@ bool read_header(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::span<con
     jpeg_create_decompress(&jpeg);
     jpeg.progress = static_cast<jpeg_progress_mgr*>(jpeg.client_data);  // kept where creation clears the rest
     jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+    jpeg_save_markers(&jpeg, exif_marker, 0xFFFF);
     jpeg_read_header(&jpeg, TRUE);
     const bool four_inks = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
     jpeg.out_color_space = four_inks ? JCS_CMYK : JCS_EXT_RGBX;  // four bytes a pixel, as texels have them
@@ -74,6 +81,17 @@ bool read_rows(jpeg_decompress_struct& jpeg, JpegErrors& errors, Image& image) {
         jpeg_read_scanlines(&jpeg, &row, 1);
     }
     return true;
+}
+
+int orientation_of(const jpeg_decompress_struct& jpeg) {
+    constexpr std::string_view beginning("Exif\0\0", 6);
+    for (const auto* marker = jpeg.marker_list; marker != nullptr; marker = marker->next) {
+        const std::span<const unsigned char> data(marker->data, marker->data_length);
+        if (marker->marker == exif_marker && data.size() > beginning.size() &&
+            std::equal(beginning.begin(), beginning.end(), data.begin()))
+            return exif_orientation(data.subspan(beginning.size()));
+    }
+    return 1;
 }
 
 // CMYK as Adobe writes it: 255 is no ink.
@@ -94,6 +112,7 @@ std::string decode(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::span<c
     if (errors.incomplete) return "it is damaged or ends too early";
     const bool inks = jpeg.out_color_space == JCS_CMYK;
     for (std::uint32_t& texel : image.texels) texel = inks ? from_inks(texel) : texel & 0xFF'FFFF;
+    turn_upright(image, orientation_of(jpeg));
     return {};
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "helpers/image/codecs.h"
+#include "helpers/image/orientation.h"
 
 namespace raywalk {
 
@@ -37,6 +38,9 @@ std::string first_line(const std::string& message) {
     return message.substr(0, message.find('\n'));
 }
 
+bool is_above_one(float value) { return value > 1.0f + 0.5f / 255; }
+bool is_above_one(std::uint8_t) { return false; }
+
 std::uint32_t to_byte(float value) {
     if (!(value > 0)) return 0;  // NaN too
     return static_cast<std::uint32_t>(std::lround(std::min(value, 1.0f) * 255.0f));
@@ -62,8 +66,11 @@ bool read_rows(OIIO::ImageInput& input, OIIO::TypeDesc type, int begin, int end,
               : input.read_scanlines(0, 0, spec.y + begin, spec.y + end, spec.z, 0, channels, type, values.data());
     if (!read) return false;
     std::uint32_t* texels = image.texels.data() + width * static_cast<std::size_t>(begin);
-    for (std::size_t i = 0; i < width * rows; ++i)
-        texels[i] = texel(&values[i * static_cast<std::size_t>(channels)], channels);
+    for (std::size_t i = 0; i < width * rows; ++i) {
+        const Value* value = &values[i * static_cast<std::size_t>(channels)];
+        texels[i] = texel(value, channels);
+        image.clipped += std::any_of(value, value + channels, [](Value v) { return is_above_one(v); });
+    }
     return true;
 }
 
@@ -119,6 +126,7 @@ std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const
                     return reason;
         }
         std::string problem = read_pixels(*input, image);
+        if (problem.empty()) turn_upright(image, spec.get_int_attribute("Orientation", 1));
         input->close();
         return problem;
     } catch (const std::bad_alloc&) {

@@ -113,6 +113,12 @@ SceneFiles<Image> read_images(const Scene& scene, const Limits& limits) {
                                "image " + quoted_name(file.string()) + " is " + std::to_string(image.width) + " x " +
                                    std::to_string(image.height) + " pixels and is stretched over a square",
                                "a square image keeps its shape"));
+            if (image.clipped > 0)
+                read.warnings.push_back(warning_at(
+                    where,
+                    "image " + quoted_name(file.string()) + " has " + std::to_string(image.clipped) +
+                        (image.clipped == 1 ? " pixel" : " pixels") + " brighter than 1, which a texture shows as 1",
+                    "scale its values to 0..1, and make up for it with brighter lights"));
             read.files.emplace(file, std::move(image));
         } catch (const InputError& error) {
             append(read.errors, error.diagnostics());

@@ -11,6 +11,7 @@ namespace raywalk {
 struct Image {
     int width = 0, height = 0;
     std::vector<std::uint32_t> texels;
+    std::uint32_t clipped = 0;  // texels of the file with a channel above 1, which became 1
 };
 
 // Linear RGB, 3 floats a pixel, row 0 on top.

@@ -38,6 +38,7 @@ struct ImageReply {
     std::uint32_t magic = 0;
     Status status = failed;
     std::uint32_t width = 0, height = 0;  // of the picture, done or too large
+    std::uint32_t clipped = 0;            // Image::clipped
 };
 
 struct ImageResult {

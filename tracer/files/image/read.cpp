@@ -65,7 +65,7 @@ Image texels_of(const ImageResult& result, const fs::path& file, const SourceLoc
     constexpr std::uint32_t largest_side = 1u << 30;
     if (pixels == 0 || std::max(result.reply.width, result.reply.height) > largest_side || body.size() != 4 * pixels)
         throw refusal(file, where, "cannot be read: its decoder broke", other_image);
-    Image image{static_cast<int>(result.reply.width), static_cast<int>(result.reply.height), {}};
+    Image image{static_cast<int>(result.reply.width), static_cast<int>(result.reply.height), {}, result.reply.clipped};
     image.texels.resize(pixels);
     std::memcpy(image.texels.data(), body.data(), body.size());
     for (std::uint32_t& texel : image.texels) texel &= 0xFF'FFFF;
