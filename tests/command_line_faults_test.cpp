@@ -132,6 +132,42 @@ TEST_F(CommandLine, WhatIsNoFaultOfAnImageEndsWithOne) {
     EXPECT_THAT(outcome.errors, HasSubstr("the program raywalk_png_jpeg is neither in"));
 }
 
+// Before the scene is read: there is none here.
+TEST_F(CommandLine, AMissingEncoderIsNoticedBeforeTheWork) {
+    fs::copy_file(RAYWALK_PROGRAM, path("raywalk"));  // without the programs that write images
+    for (const std::string name : {"a.png", "a.jpg", "a.exr", "a.hdr", "a.tif"}) {
+        Process alone = process({"none.scene", "-render", name});
+        alone.words[0] = path("raywalk").string();
+        const Outcome outcome = run(alone);
+        EXPECT_EQ(outcome.exit_code, 1) << name;
+        EXPECT_THAT(outcome.errors, HasSubstr("cannot write '" + name + "': the program raywalk_")) << name;
+    }
+    Process alone = process({"room.scene", "-render", "a.pfm", "--quiet"});
+    alone.words[0] = path("raywalk").string();
+    EXPECT_EQ(run(alone).exit_code, 0);
+}
+
+TEST_F(CommandLine, AnEncoderThatBreaksEndsWithOneAndKeepsTheOldPicture) {
+    fs::copy_file(RAYWALK_PROGRAM, path("raywalk"));
+    const std::pair<const char*, const char*> ends[] = {
+        {"kill -SEGV $$", "Segmentation fault"}, {"exit 3", "gave up"}, {"exit 0", "said nothing"}};
+    for (const auto& [end, message] : ends)
+        for (const std::string name : {"a.png", "a.exr"}) {
+            for (const char* program : {"raywalk_png_jpeg", "raywalk_openimageio"}) {
+                write_file(path(program), std::string("#!/bin/sh\n") + end + "\n");
+                fs::permissions(path(program), fs::perms::owner_all);
+            }
+            write_file(path(name), "old");
+            Process broken = process({"room.scene", "-render", name, "--quiet"});
+            broken.words[0] = path("raywalk").string();
+            const Outcome outcome = run(broken);
+            EXPECT_EQ(outcome.exit_code, 1) << name;
+            EXPECT_THAT(outcome.errors, HasSubstr("cannot write '" + name + "': ")) << name;
+            EXPECT_THAT(outcome.errors, HasSubstr(message)) << name;
+            EXPECT_EQ(read_file(path(name)), "old");
+        }
+}
+
 TEST_F(CommandLine, AnAbsurdNumberOfThreadsOfTheEnvironmentIsNone) {
     const std::string once = picture({}, "a.pfm");
     Process absurd = process({"room.scene", "-render", "a.pfm", "--quiet"});

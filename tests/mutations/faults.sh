@@ -35,6 +35,26 @@ fault "polygons are strips" tracer/description/obj_chunk.cpp \
     'if (count == 0) first = corner;' 'first = previous;' \
     description_tests 'ObjTest.PolygonsAreFansFromTheirFirstCorner'
 
+# Writers of pictures.
+fault "pictures hold the date" tracer/description/image_openimageio.cpp \
+    'spec.attribute("DateTime", "");' '' \
+    description_tests 'ImageWriting.NoFormatHoldsTheDate'
+fault "negative values and infinity go into an HDR" tracer/description/image_openimageio.cpp \
+    'value = value > 0 ? std::min(value, largest) : 0.0f;' '(void)value;' \
+    description_tests 'ImageWriting.HdrHasNoNegativeOrEndlessValues'
+fault "whoever waits for a picture waits for its compression" tracer/description/image_openimageio.cpp \
+    'picture.urgent ? "none" : "zip:3"' '"zip:3"' \
+    description_tests 'ImageWriting.UrgentFloatsAreNotCompressed'
+fault "kept bytes of a picture go to the wrong place" tracer/description/image_encoded_file.cpp \
+    'if (kept_.empty()) kept_at_ = offset;' '' \
+    description_tests 'ImageWriting/FloatFormat.HoldsEveryBitUrgentOrNot/0'
+fault "a picture that was not encoded replaces the old one" tracer/description/image_write.cpp \
+    'if (!problem.empty()) throw' 'if (false) throw' \
+    command_line_tests 'CommandLine.AnEncoderThatBreaksEndsWithOneAndKeepsTheOldPicture'
+fault "a missing encoder is noticed when the picture is done" tracer/description/image_write.cpp \
+    'extension && extension->format ? obstacle_to_encoding(*extension->format) : std::string()' 'std::string()' \
+    command_line_tests 'CommandLine.AMissingEncoderIsNoticedBeforeTheWork'
+
 # Film, camera and walk.
 fault "a cleared film keeps its samples" tracer/rendering/film.cpp \
     'std::fill(samples.begin(), samples.end(), 0)' '(void)0' \

@@ -1,9 +1,11 @@
 #include "tracer/ground/whole_file.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <string>
 #include <system_error>
@@ -65,8 +67,13 @@ int open_without_name(const fs::path& target) {
 
 }  // namespace
 
-WholeFile::WholeFile(fs::path file) : file_(std::move(file)), target_(followed(file_)) {
-    if (is_special(target_)) return;
+WholeFile::WholeFile(fs::path file)
+    : file_(std::move(file)), target_(followed(file_)), is_direct_(is_special(target_)) {
+    if (is_direct_) {
+        descriptor_ = memfd_create("raywalk-file", MFD_CLOEXEC);
+        if (descriptor_ < 0) fail(errno);
+        return;
+    }
     descriptor_ = open_without_name(target_);
     if (descriptor_ >= 0) return;
     part_ = free_name_beside(target_, [&](const fs::path& free) {
@@ -84,38 +91,31 @@ void WholeFile::fail(int error) const {
     throw WorkError("cannot write " + quoted_name(file_.string()) + ": " + std::generic_category().message(error));
 }
 
-void WholeFile::write_at(std::uint64_t offset, std::string_view bytes) {
-    const int error = write_all(bytes, [&](std::string_view rest) {
-        const std::uint64_t done = bytes.size() - rest.size();
-        return pwrite(descriptor_, rest.data(), rest.size(), static_cast<off_t>(offset + done));
-    });
-    if (error != 0) fail(error);
-}
-
 void WholeFile::append(std::string_view bytes) {
-    if (descriptor_ < 0)
-        content_ += bytes;
-    else
-        write_at(size_, bytes);
-    size_ += bytes.size();
-}
-
-void WholeFile::overwrite(std::uint64_t offset, std::string_view bytes) {
-    if (descriptor_ < 0)
-        content_.replace(offset, bytes.size(), bytes);
-    else
-        write_at(offset, bytes);
+    const int error =
+        write_all(bytes, [&](std::string_view rest) { return ::write(descriptor_, rest.data(), rest.size()); });
+    if (error != 0) fail(error);
 }
 
 void WholeFile::write_directly() {
     // Opening a pipe that nobody reads would wait for ever.
-    descriptor_ = open(target_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-    if (descriptor_ < 0 && errno == ENXIO)
+    const int target = open(target_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    if (target < 0 && errno == ENXIO)
         throw WorkError("cannot write " + quoted_name(file_.string()) + ": nothing reads from it");
-    if (descriptor_ < 0) fail(errno);
-    fcntl(descriptor_, F_SETFL, O_WRONLY);  // from here on a full pipe is waited for
-    const int error =
-        write_all(content_, [&](std::string_view rest) { return ::write(descriptor_, rest.data(), rest.size()); });
+    if (target < 0) fail(errno);
+    fcntl(target, F_SETFL, O_WRONLY);                        // from here on a full pipe is waited for
+    const int content = std::exchange(descriptor_, target);  // closed whatever happens, as the new file is
+    std::array<char, 1 << 16> piece;
+    ssize_t count = 0;
+    off_t at = 0;
+    int error = 0;
+    while (error == 0 && (count = pread(content, piece.data(), piece.size(), at)) > 0) {
+        error = write_all({piece.data(), static_cast<std::size_t>(count)},
+                          [&](std::string_view rest) { return ::write(target, rest.data(), rest.size()); });
+        at += count;
+    }
+    if (count < 0) error = errno;
+    close(content);
     if (error != 0) fail(error);
     close_file();
 }
@@ -125,7 +125,7 @@ void WholeFile::close_file() {
 }
 
 void WholeFile::finish(Durability durability) {
-    if (descriptor_ < 0) return write_directly();
+    if (is_direct_) return write_directly();
     if (durability == Durability::on_disk && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP)
         fail(errno);
     if (part_.empty()) {

@@ -27,22 +27,19 @@ class WholeFile {
     WholeFile& operator=(const WholeFile&) = delete;
 
     void append(std::string_view bytes);
-    [[nodiscard]] std::uint64_t size() const { return size_; }  // bytes appended so far
-    // Replaces bytes that were appended before.
-    void overwrite(std::uint64_t offset, std::string_view bytes);
+    // The new file itself, open for writing: another process may write it instead.
+    [[nodiscard]] int descriptor() const { return descriptor_; }
     void finish(Durability durability = Durability::on_disk);
 
   private:
     [[noreturn]] void fail(int error) const;
-    void write_at(std::uint64_t offset, std::string_view bytes);
     void close_file();
     void write_directly();
 
     std::filesystem::path file_, target_;  // the name given, and where links lead from there
     std::filesystem::path part_;           // name of the new file; empty: none yet
-    int descriptor_ = -1;                  // of the new file; -1: a device or pipe
-    std::string content_;                  // for a device or pipe
-    std::uint64_t size_ = 0;
+    bool is_direct_;                       // a device or pipe: the new file is in memory, and copied in the end
+    int descriptor_ = -1;                  // of the new file
 };
 
 // The same in one step.
