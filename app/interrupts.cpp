@@ -41,6 +41,7 @@ void handle(int) {
         const std::int64_t now = milliseconds_now();
         if (!flag.exchange(true)) {
             first_signal = now;
+            if (is_saving) say("\nraywalk: saving ...\n");
             errno = error;
             return;
         }
@@ -81,7 +82,10 @@ void catch_interrupts() {
 GracefulInterrupts::GracefulInterrupts() { is_graceful = true; }
 GracefulInterrupts::~GracefulInterrupts() { is_graceful = false; }
 
-UnbreakableSaving::UnbreakableSaving(bool appears_whole) { is_saving = appears_whole; }
+UnbreakableSaving::UnbreakableSaving(bool appears_whole) {
+    is_saving = appears_whole;
+    if (flag) say("raywalk: saving ...\n");
+}
 UnbreakableSaving::~UnbreakableSaving() { is_saving = false; }
 
 const std::atomic<bool>& interrupted() { return flag; }

@@ -20,6 +20,7 @@ class GracefulInterrupts {
 };
 
 // While one lives beside a GracefulInterrupts, no signal ends the program (but SIGKILL): what is being saved is saved.
+// Whoever has interrupted the program is told so, as a large picture may take some seconds.
 class UnbreakableSaving {
   public:
     // `appears_whole` false: into a pipe, which may never take it; nothing is changed then.

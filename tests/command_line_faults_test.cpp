@@ -225,6 +225,7 @@ TEST_F(CommandLine, AnInterruptSavesWhatThereIsAndEndsWith130) {
         const Outcome outcome = disturbed(process({"room.scene", "-render", "picture.png", "--spp", "10000000"}),
                                           [&](int id) { kill(id, signal); });
         EXPECT_EQ(outcome.exit_code, 130);
+        EXPECT_THAT(outcome.errors, HasSubstr("saving ..."));
         EXPECT_THAT(outcome.errors, HasSubstr("interrupted after"));
         EXPECT_THAT(outcome.errors, HasSubstr("'picture.png' holds"));
         const Image image = pixels("picture.png");

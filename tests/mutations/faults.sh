@@ -54,6 +54,9 @@ fault "a picture that was not encoded replaces the old one" tracer/description/i
 fault "a missing encoder is noticed when the picture is done" tracer/description/image_write.cpp \
     'extension && extension->format ? obstacle_to_encoding(*extension->format) : std::string()' 'std::string()' \
     command_line_tests 'CommandLine.AMissingEncoderIsNoticedBeforeTheWork'
+fault "nobody is told that a picture is being saved" app/interrupts.cpp \
+    'if (flag) say' 'if (false) say' \
+    command_line_tests 'CommandLine.AnInterruptSavesWhatThereIsAndEndsWith130'
 
 # Film, camera and walk.
 fault "a cleared film keeps its samples" tracer/rendering/film.cpp \
