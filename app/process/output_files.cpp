@@ -16,9 +16,8 @@ namespace {
 bool has_output(const Options& options) { return options.mode == Mode::render || options.mode == Mode::capture; }
 bool has_statistics(const Options& options) { return options.stats && *options.stats != "-"; }
 
-void require_writable(const fs::path& file) {
-    if (const std::string obstacle = obstacle_to_writing(file); !obstacle.empty())
-        throw WorkError("cannot write " + quoted_name(file.string()) + ": " + obstacle);
+void require_none(const fs::path& file, const std::string& obstacle) {
+    if (!obstacle.empty()) throw WorkError("cannot write " + quoted_name(file.string()) + ": " + obstacle);
 }
 
 // Whether there or not yet there; devices take any number of files.
@@ -31,10 +30,10 @@ bool same_file(const fs::path& a, const fs::path& b) {
 }  // namespace
 
 void require_writable_outputs(const Options& options) {
-    if (has_output(options)) require_writable(options.output);
-    if (options.frames) require_writable(*options.frames);
+    if (has_output(options)) require_none(options.output, obstacle_to_writing_image(options.output));
+    if (options.frames) require_none(*options.frames, obstacle_to_writing_image(*options.frames));
     if (!has_statistics(options)) return;
-    require_writable(*options.stats);
+    require_none(*options.stats, obstacle_to_writing(*options.stats));
     if (has_output(options) && same_file(options.output, *options.stats))
         throw UsageError("--stats " + quoted_name(options.stats->string()) +
                          " is the picture's own name: choose another one");

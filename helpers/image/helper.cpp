@@ -1,7 +1,7 @@
-// The programs raywalk_png_jpeg and raywalk_openimageio: decode or encode one picture, from standard input to standard
-// output, both files in memory. Not for the command line: image_process.cpp runs them.
+// The programs raywalk_png_jpeg and raywalk_openimageio: decode or encode one picture. Standard input is the file or
+// the samples, standard output the reply. Not for the command line: helper_process.cpp runs them.
 //   decode FORMAT PIXELS MEMORY_BYTES OUTPUT_BYTES SECONDS
-//   encode FORMAT WIDTH HEIGHT          (JPEG)
+//   encode FORMAT WIDTH HEIGHT urgent|unhurried          (into the open file `encoded_file`)
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -9,12 +9,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include "helpers/image/codecs.h"
 #include "tracer/files/image/helper_process.h"
@@ -115,21 +117,31 @@ int decode(ImageFormat format, std::string_view input, std::uint64_t most_pixels
                   image.texels.data(), image.texels.size() * sizeof image.texels[0], image.clipped);
 }
 
-int encode(std::string_view input, int width, int height) {
-    const std::size_t values = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3;
-    if (input.size() != values) return answer_failure("its size is wrong");
-    std::vector<unsigned char> bytes;
-    const std::string problem =
-        encode_bytes(width, height, {reinterpret_cast<const std::uint8_t*>(input.data()), values}, bytes);
+// Samples from standard input, as many as fill `to`.
+bool read_samples(std::span<std::byte> to) {
+    while (!to.empty()) {
+        const ssize_t count = read(STDIN_FILENO, to.data(), to.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return false;
+        to = to.subspan(static_cast<std::size_t>(count));
+    }
+    return true;
+}
+
+int encode(const ImageEncoding& picture) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows past its limit is an error of writing
+    EncodedFile file(encoded_file);
+    std::string problem = encode_picture(picture, read_samples, file);
+    if (!file.flush()) problem = std::generic_category().message(file.error());
     if (!problem.empty()) return answer_failure(problem);
-    return answer(ImageReply::done, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), bytes.data(),
-                  bytes.size());
+    return answer(ImageReply::done, static_cast<std::uint64_t>(picture.width),
+                  static_cast<std::uint64_t>(picture.height), nullptr, 0);
 }
 
 int run(int count, char** words) {
     const std::string task = count > 1 ? words[1] : "";
     const auto number = [&](int i) { return std::strtoull(words[i], nullptr, 10); };
-    if (!(task == "decode" && count == 7) && !(task == "encode" && count == 5)) {
+    if (!(task == "decode" && count == 7) && !(task == "encode" && count == 6)) {
         std::fputs("raywalk runs this program for each picture that it reads or writes\n", stderr);
         return 2;
     }
@@ -141,9 +153,11 @@ int run(int count, char** words) {
         limit(RLIMIT_CPU, number(6));
     }
     try {
+        if (task == "encode")
+            return encode(
+                {format, static_cast<int>(number(3)), static_cast<int>(number(4)), std::string(words[5]) == "urgent"});
         const Input input;
-        return task == "decode" ? decode(format, input.bytes(), number(3), number(4))
-                                : encode(input.bytes(), static_cast<int>(number(3)), static_cast<int>(number(4)));
+        return decode(format, input.bytes(), number(3), number(4));
     } catch (const std::bad_alloc&) {
         return answer_failure("it needs too much memory");
     } catch (const std::exception& error) {

@@ -11,6 +11,7 @@
 #include <array>
 #include <csetjmp>
 #include <cstdlib>
+#include <memory>
 #include <string_view>
 
 #include "helpers/image/orientation.h"
@@ -116,10 +117,38 @@ std::string decode(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::span<c
     return {};
 }
 
-bool write_all(jpeg_compress_struct& jpeg, JpegErrors& errors, const std::uint8_t* rgb, unsigned char** output,
-               unsigned long* size) {
+// What libjpeg writes, piece by piece.
+struct JpegOutput {
+    jpeg_destination_mgr manager;  // first: libjpeg's pointer to it is a pointer to this
+    EncodedFile* file;
+    std::array<JOCTET, 1 << 16> piece;
+};
+
+void begin_piece(j_compress_ptr jpeg) {
+    auto* output = reinterpret_cast<JpegOutput*>(jpeg->dest);
+    output->manager.next_output_byte = output->piece.data();
+    output->manager.free_in_buffer = output->piece.size();
+}
+
+void write_piece(j_compress_ptr jpeg, std::size_t size) {
+    const auto* output = reinterpret_cast<JpegOutput*>(jpeg->dest);
+    if (!output->file->append({reinterpret_cast<const char*>(output->piece.data()), size}))
+        ERREXIT(jpeg, JERR_FILE_WRITE);
+}
+
+boolean end_piece(j_compress_ptr jpeg) {
+    write_piece(jpeg, reinterpret_cast<JpegOutput*>(jpeg->dest)->piece.size());
+    begin_piece(jpeg);
+    return TRUE;
+}
+
+void end_output(j_compress_ptr jpeg) {
+    const auto* output = reinterpret_cast<JpegOutput*>(jpeg->dest);
+    write_piece(jpeg, output->piece.size() - output->manager.free_in_buffer);
+}
+
+bool write_all(jpeg_compress_struct& jpeg, JpegErrors& errors, std::span<std::uint8_t> row, const NextRows& next) {
     if (setjmp(errors.exit)) return false;
-    jpeg_mem_dest(&jpeg, output, size);
     jpeg.input_components = 3;
     jpeg.in_color_space = JCS_RGB;
     jpeg_set_defaults(&jpeg);
@@ -127,8 +156,9 @@ bool write_all(jpeg_compress_struct& jpeg, JpegErrors& errors, const std::uint8_
     for (int i = 0; i < jpeg.num_components; ++i) jpeg.comp_info[i].h_samp_factor = jpeg.comp_info[i].v_samp_factor = 1;
     jpeg_start_compress(&jpeg, TRUE);
     while (jpeg.next_scanline < jpeg.image_height) {
-        auto* row = const_cast<JSAMPROW>(rgb + std::size_t{jpeg.next_scanline} * jpeg.image_width * 3);  // only read
-        jpeg_write_scanlines(&jpeg, &row, 1);
+        if (!next(std::as_writable_bytes(row))) ERREXIT(&jpeg, JERR_INPUT_EOF);
+        JSAMPROW start = row.data();
+        jpeg_write_scanlines(&jpeg, &start, 1);
     }
     jpeg_finish_compress(&jpeg);
     return true;
@@ -149,21 +179,25 @@ std::string decode_jpeg(std::span<const char> bytes, const ImageRefusal& refusal
     return problem;
 }
 
-std::string encode_jpeg(int width, int height, std::span<const std::uint8_t> rgb, std::vector<unsigned char>& bytes) {
-    if (width > JPEG_MAX_DIMENSION || height > JPEG_MAX_DIMENSION) return "a JPEG has at most 65500 pixels on a side";
+std::string encode_jpeg(const ImageEncoding& picture, const NextRows& next, EncodedFile& file) {
+    if (picture.width > JPEG_MAX_DIMENSION || picture.height > JPEG_MAX_DIMENSION)
+        return "a JPEG has at most 65500 pixels on a side";
     jpeg_compress_struct jpeg{};
     JpegErrors errors{};
+    const auto output = std::make_unique<JpegOutput>();
+    output->manager.init_destination = begin_piece;
+    output->manager.empty_output_buffer = end_piece;
+    output->manager.term_destination = end_output;
+    output->file = &file;
     prepare(errors);
     jpeg.err = &errors.manager;
     jpeg_create_compress(&jpeg);
-    jpeg.image_width = static_cast<JDIMENSION>(width);
-    jpeg.image_height = static_cast<JDIMENSION>(height);
-    unsigned char* output = nullptr;
-    unsigned long size = 0;
-    const bool written = write_all(jpeg, errors, rgb.data(), &output, &size);
+    jpeg.dest = &output->manager;
+    jpeg.image_width = static_cast<JDIMENSION>(picture.width);
+    jpeg.image_height = static_cast<JDIMENSION>(picture.height);
+    std::vector<std::uint8_t> row(static_cast<std::size_t>(picture.width) * 3);
+    const bool written = write_all(jpeg, errors, row, next);
     jpeg_destroy_compress(&jpeg);
-    if (written) bytes.assign(output, output + size);
-    std::free(output);
     return written ? std::string() : errors.message.data();
 }
 

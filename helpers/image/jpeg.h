@@ -7,6 +7,6 @@ namespace raywalk {
 
 std::string decode_jpeg(std::span<const char> bytes, const ImageRefusal& refusal, Image& image);
 // Quality 95, colours at full resolution.
-std::string encode_jpeg(int width, int height, std::span<const std::uint8_t> rgb, std::vector<unsigned char>& bytes);
+std::string encode_jpeg(const ImageEncoding& picture, const NextRows& next, EncodedFile& file);
 
 }  // namespace raywalk

@@ -11,7 +11,11 @@ namespace raywalk {
 
 namespace {
 
-// What libpng's callbacks share. libpng leaves by longjmp, so the functions that call it own nothing themselves.
+// Strategies of zlib for png_set_compression_strategy: Z_DEFAULT_STRATEGY and Z_RLE, whose header is not needed else.
+constexpr int any = 0, rle = 3;
+
+// What libpng's callbacks share when they read. libpng leaves by longjmp, so the functions that call it own nothing
+// themselves.
 struct PngTask {
     const char* at = nullptr;  // input not yet read
     std::size_t left = 0;
@@ -22,7 +26,7 @@ struct PngTask {
 };
 
 [[noreturn]] void on_error(png_structp png, png_const_charp message) {
-    static_cast<PngTask*>(png_get_error_ptr(png))->problem = message;
+    *static_cast<std::string*>(png_get_error_ptr(png)) = message;
     png_longjmp(png, 1);
 }
 
@@ -73,16 +77,52 @@ std::string decode(PngTask& task, const ImageRefusal& refusal, Image& image) {
     return read_rows(task) ? std::string() : task.problem;
 }
 
+void on_write(png_structp png, png_bytep data, png_size_t size) {
+    if (!static_cast<EncodedFile*>(png_get_io_ptr(png))->append({reinterpret_cast<const char*>(data), size}))
+        png_error(png, "it cannot be written");
+}
+
+bool write_all(png_structp png, png_infop info, const ImageEncoding& picture, std::span<std::uint8_t> row,
+               const NextRows& next) {
+    if (setjmp(png_jmpbuf(png))) return false;
+    png_set_user_limits(png, 0x7FFF'FFFF, 0x7FFF'FFFF);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height), 8,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
+    png_set_compression_level(png, picture.urgent ? 1 : 3);
+    png_set_compression_strategy(png, picture.urgent ? rle : any);
+    png_set_compression_buffer_size(png, 1 << 16);  // an IDAT chunk
+    png_write_info(png, info);
+    for (int y = 0; y < picture.height; ++y) {
+        if (!next(std::as_writable_bytes(row))) png_error(png, "its rows end too early");
+        png_write_row(png, row.data());
+    }
+    png_write_end(png, nullptr);
+    return true;
+}
+
 }  // namespace
 
 std::string decode_png(std::span<const char> bytes, const ImageRefusal& refusal, Image& image) {
     PngTask task{.at = bytes.data(), .left = bytes.size()};
-    task.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &task, on_error, on_warning);
+    task.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &task.problem, on_error, on_warning);
     if (task.png) task.info = png_create_info_struct(task.png);
     if (!task.info) throw std::bad_alloc();
     std::string problem = decode(task, refusal, image);
     png_destroy_read_struct(&task.png, &task.info, nullptr);
     for (std::uint32_t& texel : image.texels) texel &= 0xFF'FFFF;  // without alpha
+    return problem;
+}
+
+std::string encode_png(const ImageEncoding& picture, const NextRows& next, EncodedFile& file) {
+    std::string problem;
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &problem, on_error, on_warning);
+    png_infop info = png ? png_create_info_struct(png) : nullptr;
+    if (!info) throw std::bad_alloc();
+    png_set_write_fn(png, &file, on_write, [](png_structp) {});
+    std::vector<std::uint8_t> row(static_cast<std::size_t>(picture.width) * 3);
+    write_all(png, info, picture, row, next);
+    png_destroy_write_struct(&png, &info);
     return problem;
 }
 

@@ -16,8 +16,9 @@ std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const
     return format == ImageFormat::jpeg ? decode_jpeg(bytes, refusal, image) : neither;
 }
 
-std::string encode_bytes(int width, int height, std::span<const std::uint8_t> rgb, std::vector<unsigned char>& bytes) {
-    return encode_jpeg(width, height, rgb, bytes);
+std::string encode_picture(const ImageEncoding& picture, const NextRows& next, EncodedFile& file) {
+    if (picture.format == ImageFormat::png) return encode_png(picture, next, file);
+    return picture.format == ImageFormat::jpeg ? encode_jpeg(picture, next, file) : neither;
 }
 
 }  // namespace raywalk

@@ -1,5 +1,5 @@
 // PNG and JPEG, as the helper program decodes them. The formats that OpenImageIO reads are not fuzzed: what breaks
-// there is not ours to mend, and ends with the helper (see image_process.h).
+// there is not ours to mend, and ends with the helper (see helper_process.h).
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

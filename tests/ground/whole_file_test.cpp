@@ -47,12 +47,34 @@ TEST(WholeFile, IsThereWhenItIsFinishedAndNotBefore) {
     whole.append("one ");
     whole.append("two ");
     whole.append("six");
-    EXPECT_EQ(whole.size(), 11u);
-    whole.overwrite(4, "TWO");
     EXPECT_EQ(read_file(file), "old");
     whole.finish(Durability::in_system);
-    EXPECT_EQ(read_file(file), "one TWO six");
+    EXPECT_EQ(read_file(file), "one two six");
     EXPECT_EQ(files_in(folder.path()), 1u);
+}
+
+TEST(WholeFile, AReplacedFileKeepsItsRights) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "a.txt";
+    for (const mode_t mode : {0600, 0640, 0666}) {
+        write_file(file, "old");
+        chmod(file.c_str(), mode);
+        write_whole(file, "new");
+        struct stat status {};
+        ASSERT_EQ(stat(file.c_str(), &status), 0);
+        EXPECT_EQ(status.st_mode & 0777, mode);
+        EXPECT_EQ(read_file(file), "new");
+    }
+}
+
+TEST(WholeFile, ALinkThatLeadsNowhereYetIsFollowed) {
+    const TemporaryFolder folder;
+    fs::create_symlink("second", folder.path() / "first");
+    fs::create_symlink(folder.path() / "target", folder.path() / "second");
+    write_whole(folder.path() / "first", "new");
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "first"));
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "second"));
+    EXPECT_EQ(read_file(folder.path() / "target"), "new");
 }
 
 TEST(WholeFile, NewFilesHaveTheUsualRights) {
@@ -141,15 +163,15 @@ TEST(WholeFile, APipeThatNobodyReadsIsNotWaitedFor) {
     std::thread another_reader([&] { got = read_file(pipe); });
     for (bool done = false; !done;) try {
             WholeFile whole(pipe);
-            whole.append("one two");
-            whole.overwrite(0, "ONE");
+            whole.append("one ");
+            whole.append("two");
             whole.finish();
             done = true;
         } catch (const WorkError&) {
             std::this_thread::yield();
         }
     another_reader.join();
-    EXPECT_EQ(got, "ONE two");
+    EXPECT_EQ(got, "one two");
 }
 
 }  // namespace

@@ -35,6 +35,29 @@ fault "polygons are strips" tracer/files/mesh/obj_chunk.cpp \
     'if (count == 0) first = corner;' 'first = previous;' \
     files_tests 'ObjTest.PolygonsAreFansFromTheirFirstCorner'
 
+# Writers of pictures.
+fault "pictures hold the date" helpers/image/openimageio.cpp \
+    'spec.attribute("DateTime", "");' '' \
+    files_tests 'ImageWriting.NoFormatHoldsTheDate'
+fault "negative values and infinity go into an HDR" helpers/image/openimageio.cpp \
+    'value = value > 0 ? std::min(value, largest) : 0.0f;' '(void)value;' \
+    files_tests 'ImageWriting.HdrHasNoNegativeOrEndlessValues'
+fault "whoever waits for a picture waits for its compression" helpers/image/openimageio.cpp \
+    'picture.urgent ? "none" : "zip:3"' '"zip:3"' \
+    files_tests 'ImageWriting.UrgentFloatsAreNotCompressed'
+fault "kept bytes of a picture go to the wrong place" helpers/image/encoded_file.cpp \
+    'if (kept_.empty()) kept_at_ = offset;' '' \
+    files_tests 'ImageWriting/FloatFormat.HoldsEveryBitUrgentOrNot/0'
+fault "a picture that was not encoded replaces the old one" tracer/files/image/write.cpp \
+    'if (!problem.empty()) throw' 'if (false) throw' \
+    command_line_tests 'CommandLine.AnEncoderThatBreaksEndsWithOneAndKeepsTheOldPicture'
+fault "a missing encoder is noticed when the picture is done" tracer/files/image/write.cpp \
+    'extension && extension->format ? obstacle_to_encoding(*extension->format) : std::string()' 'std::string()' \
+    command_line_tests 'CommandLine.AMissingEncoderIsNoticedBeforeTheWork'
+fault "nobody is told that a picture is being saved" app/interrupts.cpp \
+    'if (flag) say' 'if (false) say' \
+    command_line_tests 'CommandLine.AnInterruptSavesWhatThereIsAndEndsWith130'
+
 # Film, camera and walk.
 fault "a cleared film keeps its samples" tracer/picture/film.cpp \
     'std::fill(samples.begin(), samples.end(), 0)' '(void)0' \

@@ -195,9 +195,9 @@ std::string RunningHelper::end(double seconds) {
     if (!in_time) return "it takes too much time";
     if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
         return "it takes too much time or memory";
-    if (WIFSIGNALED(status)) return std::string("its decoder broke (") + strsignal(WTERMSIG(status)) + ")";
-    if (WEXITSTATUS(status) == 127) throw WorkError("a decoder of images cannot start; are its libraries installed?");
-    return WEXITSTATUS(status) == 0 ? "" : "its decoder gave up";
+    if (WIFSIGNALED(status)) return std::string("its codec broke (") + strsignal(WTERMSIG(status)) + ")";
+    if (WEXITSTATUS(status) == 127) throw WorkError("a codec of images cannot start; are its libraries installed?");
+    return WEXITSTATUS(status) == 0 ? "" : "its codec gave up";
 }
 
 }  // namespace raywalk

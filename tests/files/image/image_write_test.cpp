@@ -1,12 +1,12 @@
 // Image files as another program reads them: OpenImageIO's oiiotool, which compares them with a PFM of the same
-// picture. That a PFM holds the floats is a test of its own.
+// picture. That a PFM holds the floats, as its few lines say, is tested byte by byte.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <bit>
 #include <cmath>
-#include <mutex>
+#include <cstring>
+#include <limits>
 
 #include "tests/files/folder.h"
 #include "tests/support/process.h"
@@ -91,54 +91,90 @@ TEST(ImageWriting, PngHoldsEveryByteUrgentOrNot) {
         }
 }
 
-class AnyFormat : public testing::TestWithParam<const char*> {};
-
-TEST_P(AnyFormat, HasTheSameBytesForAnyNumberOfThreads) {
+TEST(ImageWriting, HdrHasNoNegativeOrEndlessValues) {
+    constexpr float endless = std::numeric_limits<float>::infinity(), largest = 0x1.FEp126f;
     const TestFolder folder;
-    const fs::path file = folder.path() / ("a" + std::string(GetParam()));
-    const FloatImage image = awkward_picture(40, 300);
-    const int usual = omp_get_max_threads();
-    std::vector<std::string> bytes;
-    for (const int threads : {1, 2, 5}) {
-        omp_set_num_threads(threads);
-        write_image(file, image);
-        bytes.push_back(content_of(file));
+    write_image(
+        folder.path() / "a.hdr",
+        FloatImage{3, 1, {-1, 0.5f, std::numeric_limits<float>::quiet_NaN(), endless, 0x1p127f, 0, -endless, 0, 0}});
+    write_image(folder.path() / "a.pfm", FloatImage{3, 1, {0, 0.5f, 0, largest, largest, 0, 0, 0, 0}});
+    EXPECT_EQ(difference(folder.path() / "a.hdr", folder.path() / "a.pfm"), "");
+}
+
+TEST(ImageWriting, PfmHoldsTheFloatsFromTheBottomRow) {
+    const TestFolder folder;
+    for (const auto& [width, height] : {std::pair{1, 1}, {3, 150}}) {
+        const FloatImage image = awkward_picture(width, height);
+        write_image(folder.path() / "a.pfm", image);
+        std::string expected = "PF\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n";
+        const auto row = static_cast<std::size_t>(width) * 3;
+        for (auto y = static_cast<std::size_t>(height); y-- > 0;)
+            expected.append(reinterpret_cast<const char*>(&image.rgb[y * row]), row * sizeof(float));
+        EXPECT_TRUE(content_of(folder.path() / "a.pfm") == expected) << width << " x " << height;
     }
-    omp_set_num_threads(usual);
-    EXPECT_TRUE(bytes[1] == bytes[0] && bytes[2] == bytes[0]);
+}
+
+// The same picture is the same file, whenever it is written.
+TEST(ImageWriting, NoFormatHoldsTheDate) {
+    const TestFolder folder;
+    std::vector<std::string> words = {"oiiotool", "--info", "-v"};
+    for (const char* name : {"a.png", "a.jpg", "a.exr", "a.hdr", "a.tif"}) {
+        words.push_back((folder.path() / name).string());
+        write_image(words.back(), awkward_picture(40, 300));
+    }
+    const test::Outcome outcome = test::run({.words = words});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    for (const char* name : {"a.png", "a.jpg", "a.exr", "a.hdr", "a.tif"})
+        EXPECT_THAT(outcome.output, testing::ContainsRegex(std::string(name) + " *: *40 x *300, 3 channel"));
+    EXPECT_THAT(outcome.output, testing::Not(testing::HasSubstr("DateTime")));
+}
+
+class AnyFormat : public testing::TestWithParam<const char*> {
+  protected:
+    const TestFolder folder_;
+    const fs::path file_ = folder_.path() / ("a" + std::string(GetParam()));
+};
+
+TEST_P(AnyFormat, RowsAreAskedForOnceAndAFewAtATime) {
+    for (const Saving saving : savings) {
+        std::vector<int> asked(1000);
+        const auto read = [&](int begin, int end, float* rgb) {
+            EXPECT_LE(end - begin, 64);
+            for (int y = begin; y < end; ++y) ++asked[static_cast<std::size_t>(y)];
+            std::fill_n(rgb, (end - begin) * 3, 0.5f);
+        };
+        write_image(file_, FloatRows{1, 1000, read}, saving);
+        EXPECT_THAT(asked, testing::Each(1));
+    }
+}
+
+TEST_P(AnyFormat, WhatGoesWrongInARowLeavesTheOldPicture) {
+    test::write_file(file_, "old");
+    int rows = 0;
+    const auto read = [&](int begin, int end, float* rgb) {
+        std::fill_n(rgb, (end - begin) * 3, 0.5f);
+        rows += end - begin;
+        if (rows > 300) throw std::bad_alloc();
+    };
+    EXPECT_THROW(write_image(file_, FloatRows{1, 1000, read}), std::bad_alloc);
+    EXPECT_EQ(content_of(file_), "old");
+    EXPECT_EQ(names_in(folder_.path()), 1u);
+}
+
+TEST_P(AnyFormat, GoesToADeviceToo) {
+    fs::create_symlink("/dev/full", file_);
+    try {
+        write_image(file_, awkward_picture(3, 3));
+        ADD_FAILURE() << "there is room on a full disk";
+    } catch (const WorkError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("No space left on device"));
+    }
+    fs::remove(file_);
+    fs::create_symlink("/dev/null", file_);
+    write_image(file_, awkward_picture(3, 3));
 }
 
 INSTANTIATE_TEST_SUITE_P(ImageWriting, AnyFormat, testing::Values(".png", ".jpg", ".exr", ".hdr", ".tif", ".pfm"));
-
-TEST(ImageWriting, RowsAreAskedForOnceAndAFewAtATime) {
-    const TestFolder folder;
-    for (const char* name : {"a.exr", "a.hdr", "a.tif", "a.pfm"})
-        for (const Saving saving : savings) {
-            std::mutex mutex;
-            std::vector<int> asked(1000);
-            const auto read = [&](int begin, int end, float* rgb) {
-                const std::scoped_lock lock(mutex);
-                EXPECT_LE(end - begin, 64);
-                for (int y = begin; y < end; ++y) ++asked[static_cast<std::size_t>(y)];
-                std::fill_n(rgb, (end - begin) * 3, 0.5f);
-            };
-            write_image(folder.path() / name, FloatRows{1, 1000, read}, saving);
-            EXPECT_THAT(asked, testing::Each(1)) << name;
-        }
-}
-
-TEST(ImageWriting, WhatGoesWrongInARowLeavesTheOldPicture) {
-    const TestFolder folder;
-    for (const char* name : {"a.exr", "a.hdr", "a.tif", "a.pfm"}) {
-        folder.write(name, "old");
-        const auto read = [](int begin, int, float*) {
-            if (begin > 300) throw std::bad_alloc();
-        };
-        EXPECT_THROW(write_image(folder.path() / name, FloatRows{1, 1000, read}), std::bad_alloc) << name;
-        EXPECT_EQ(content_of(folder.path() / name), "old");
-    }
-    EXPECT_EQ(names_in(folder.path()), 4u);
-}
 
 // A picture that nobody waits for is smaller; one that somebody waits for is not compressed.
 TEST(ImageWriting, UrgentFloatsAreNotCompressed) {

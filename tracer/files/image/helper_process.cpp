@@ -2,9 +2,11 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -13,6 +15,7 @@
 #include <utility>
 
 #include "tracer/files/helper_program.h"
+#include "tracer/files/image/encode.h"
 #include "tracer/ground/error.h"
 
 namespace raywalk {
@@ -63,6 +66,42 @@ class MemoryFile {
     int fd_;
 };
 
+// The way of samples to the helper: a socket rather than a pipe, as writing to a helper that has ended must fail, and
+// not end this program (SIGPIPE).
+class Channel {
+  public:
+    Channel() {
+        if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends_.data()) != 0)
+            fail("no way to an image's encoder", errno);
+    }
+    Channel(const Channel&) = delete;
+    Channel& operator=(const Channel&) = delete;
+    ~Channel() {
+        close_near_end();
+        close_far_end();
+    }
+
+    [[nodiscard]] int far_end() const { return ends_[1]; }
+    void close_near_end() { close_end(0); }
+    void close_far_end() { close_end(1); }
+    // False when the helper reads no more.
+    [[nodiscard]] bool send(std::span<const std::byte> bytes) const {
+        while (!bytes.empty()) {
+            const ssize_t count = ::send(ends_[0], bytes.data(), bytes.size(), MSG_NOSIGNAL);
+            if (count < 0 && errno == EINTR) continue;
+            if (count < 0) return false;
+            bytes = bytes.subspan(static_cast<std::size_t>(count));
+        }
+        return true;
+    }
+
+  private:
+    void close_end(std::size_t end) {
+        if (ends_[end] >= 0) close(std::exchange(ends_[end], -1));
+    }
+    std::array<int, 2> ends_{};
+};
+
 const char* helper_of(ImageFormat format) {
     const bool light = format == ImageFormat::png || format == ImageFormat::jpeg;
     return light ? "raywalk_png_jpeg" : "raywalk_openimageio";
@@ -73,32 +112,55 @@ double wall_seconds(const ImageBudget& budget) {
     return budget.seconds == 0 ? 0 : 10 + 5 * static_cast<double>(budget.seconds);
 }
 
-ImageResult run(ImageFormat format, std::vector<std::string> arguments, std::string_view input, double seconds) {
-    arguments.insert(arguments.begin() + 1, std::to_string(static_cast<int>(format)));
-    const MemoryFile given("raywalk-image-in"), got("raywalk-image-out");
-    given.fill(input);
-    given.seal();
-    RunningHelper helper(helper_of(format), std::move(arguments), std::array{given.descriptor(), got.descriptor()});
-    std::string end = helper.end(seconds);
+// What there is of the helper's reply, and how it ended.
+ImageResult result_of(const MemoryFile& got, std::string end) {
     got.seal();
     ImageResult result{{}, got.content(), std::move(end)};
     if (result.output.text().size() >= sizeof(ImageReply))
         std::memcpy(&result.reply, result.output.text().data(), sizeof(ImageReply));
-    if (result.end.empty() && result.reply.magic != ImageReply::magic_number) result.end = "its decoder said nothing";
+    if (result.end.empty() && result.reply.magic != ImageReply::magic_number) result.end = "its codec said nothing";
     return result;
 }
 
 }  // namespace
 
 ImageResult decode_in_process(ImageFormat format, std::string_view input, const ImageBudget& budget) {
-    return run(format,
-               {"decode", std::to_string(budget.pixels), std::to_string(budget.memory_bytes),
-                std::to_string(budget.output_bytes), std::to_string(budget.seconds)},
-               input, wall_seconds(budget));
+    const MemoryFile given("raywalk-image-in"), got("raywalk-image-out");
+    given.fill(input);
+    given.seal();
+    RunningHelper helper(
+        helper_of(format),
+        {"decode", std::to_string(static_cast<int>(format)), std::to_string(budget.pixels),
+         std::to_string(budget.memory_bytes), std::to_string(budget.output_bytes), std::to_string(budget.seconds)},
+        std::array{given.descriptor(), got.descriptor()});
+    std::string end = helper.end(wall_seconds(budget));
+    return result_of(got, std::move(end));
 }
 
-ImageResult encode_in_process(int width, int height, std::string_view input) {
-    return run(ImageFormat::jpeg, {"encode", std::to_string(width), std::to_string(height)}, input, 0);
+std::string encode_in_process(const ImageEncoding& picture, const RowsOfSamples& rows, int file) {
+    const MemoryFile got("raywalk-image-reply");
+    Channel channel;
+    RunningHelper helper(helper_of(picture.format),
+                         {"encode", std::to_string(static_cast<int>(picture.format)), std::to_string(picture.width),
+                          std::to_string(picture.height), picture.urgent ? "urgent" : "unhurried"},
+                         std::array{channel.far_end(), got.descriptor(), file});
+    channel.close_far_end();
+    // Until it reads no more: it has ended then, and says why.
+    for (int y = 0; y < picture.height; y += rows_at_a_time)
+        if (!channel.send(rows(y, std::min(y + rows_at_a_time, picture.height)))) break;
+    channel.close_near_end();
+    const ImageResult result = result_of(got, helper.end(0));
+    if (!result.end.empty()) return result.end;
+    return result.reply.status == ImageReply::done ? "" : std::string(result.body());
+}
+
+std::string obstacle_to_encoding(ImageFormat format) {
+    try {
+        close(open_helper(helper_of(format)));
+        return {};
+    } catch (const WorkError& error) {
+        return error.what();
+    }
 }
 
 }  // namespace raywalk

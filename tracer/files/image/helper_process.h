@@ -1,8 +1,8 @@
 // Pictures are decoded by a helper program, run once for each: what a hostile picture does to a decoder (a
 // crash, a hang, gigabytes) ends there, within limits, as a message. There are two. raywalk_png_jpeg starts in a
 // millisecond or two; raywalk_openimageio, for the other formats, brings OpenImageIO's 260 libraries along, which takes
-// 0.2-0.35 s and would be part of every start if the tracer itself were linked with them. JPEG is encoded there too, by
-// the same library.
+// 0.2-0.35 s and would be part of every start if the tracer itself were linked with them. Pictures are encoded there
+// too, by the same libraries (image_encode.h).
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,5 @@ struct ImageResult {
 
 // Runs the helper on `input`. Throws WorkError when it cannot be run, which is no fault of the picture.
 ImageResult decode_in_process(ImageFormat format, std::string_view input, const ImageBudget& budget);
-// 8-bit RGB to JPEG.
-ImageResult encode_in_process(int width, int height, std::string_view input);
 
 }  // namespace raywalk

@@ -1,4 +1,4 @@
-// Pictures in and out. What is read, and JPEG, is the work of processes of their own (helper_process.h).
+// Pictures in and out: the work of processes of their own (helper_process.h, encode.h).
 #pragma once
 
 #include <cstdint>
@@ -30,11 +30,15 @@ enum class Saving {
 };
 
 // Writes `file` whole or not at all (see whole_file.h); the extension chooses the format. Throws WorkError naming the
-// file and the system's reason. The file's bytes are the same for any number of threads.
+// file and the system's reason. The same picture gives the same bytes, whatever the number of threads and the date.
 void write_image(const std::filesystem::path& file, const FloatRows& picture, Saving saving = Saving::unhurried);
 void write_image(const std::filesystem::path& file, const FloatImage& image, Saving saving = Saving::unhurried);
 // 8-bit RGB, 3 bytes a pixel; formats as above (a float format gets value / 255).
 void write_image(const std::filesystem::path& file, int width, int height, std::span<const std::uint8_t> rgb,
                  Saving saving = Saving::unhurried);
+
+// Why an image of this name could not be written: as obstacle_to_writing (whole_file.h), or the program that encodes
+// its format is missing.
+std::string obstacle_to_writing_image(const std::filesystem::path& file);
 
 }  // namespace raywalk
