@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <optional>
+#include <utility>
 
 #include "app/commands.h"
 #include "app/console.h"
@@ -7,9 +10,11 @@
 #include "app/interrupts.h"
 #include "app/output_files.h"
 #include "app/presenter.h"
+#include "app/rescue.h"
 #include "app/statistics.h"
 #include "tracer/description/image.h"
 #include "tracer/ground/stopwatch.h"
+#include "tracer/ground/whole_file.h"
 #include "tracer/kernels/kernels.h"
 
 namespace raywalk {
@@ -27,13 +32,15 @@ std::filesystem::path frame_name(const std::string& pattern, std::size_t number)
 // A walk without a window: the same views, the same frames, drawn into memory.
 class Capture {
   public:
-    Capture(const Options& options, const LoadedScene& loaded)
-        : renderer_(loaded.compiled, select_kernels(options.isa), options.threads),
+    // `conclude` saves what there is when an interrupt comes in a step that takes long; it returns the exit code.
+    Capture(const Options& options, const LoadedScene& loaded, std::function<int(Capture&)> conclude)
+        : conclude_(std::move(conclude)),
+          renderer_(loaded.compiled, select_kernels(options.isa), options.threads),
           samples_(samples_per_pixel(options, loaded.scene)) {
         // As in the window: exposure is that of the first full picture, whatever keys follow.
         const std::optional<float> fixed = options.exposure.value_or(Exposure{}).value;
         if (!fixed) trace(opening_view(options, loaded.scene), 1);
-        exposure_ = fixed.value_or(normalizing_exposure(renderer_.film()));
+        exposure_ = fixed ? *fixed : normalizing_exposure(renderer_.film());
     }
 
     // Everything of the view that there is time for before an interrupt.
@@ -48,25 +55,34 @@ class Capture {
     void trace(const View& view, std::uint32_t samples) {
         const Stopwatch watch;
         renderer_.set_view(view);
-        renderer_.render_until(samples, interrupted());
+        {
+            const Rescue rescue([&] {
+                renderer_.close_film();
+                traced_seconds_ += watch.seconds();
+                return conclude_(*this);
+            });
+            renderer_.render_until(samples, interrupted());
+        }
         traced_seconds_ += watch.seconds();
     }
 
-    OffscreenPresenter presenter_;  // first: without a device there is no use in tracing
+    std::function<int(Capture&)> conclude_;
+    OffscreenPresenter presenter_;  // before the renderer: without a device there is no use in tracing
     Renderer renderer_;
     std::uint32_t samples_;
-    float exposure_ = 1;
+    std::optional<float> exposure_;  // none yet: of the picture itself
     double traced_seconds_ = 0;
 };
 
 void Capture::save(const std::filesystem::path& file) {
+    const UnbreakableSaving unbreakable(appears_whole(file));
     const Film& film = renderer_.film();
     if (is_float_extension(file)) {
         write_image(file, radiance_rows(film), saving_now());
         return;
     }
     publish_film(presenter_.exchange(), presenter_.preferred_content(), {.samples = renderer_.samples()}, film,
-                 renderer_.kernels(), exposure_, renderer_.threads());
+                 renderer_.kernels(), exposure_ ? *exposure_ : normalizing_exposure(film), renderer_.threads());
     const std::vector<std::uint32_t> words = presenter_.present(film.width, film.height);
     std::vector<std::uint8_t> rgb;
     rgb.reserve(words.size() * 3);
@@ -75,11 +91,27 @@ void Capture::save(const std::filesystem::path& file) {
     write_image(file, film.width, film.height, rgb, saving_now());
 }
 
+// Saves what there is of the last picture; returns the exit code.
+int conclude_capture(const Options& options, const LoadedScene& loaded, Capture& capture) {
+    capture.save(options.output);
+    if (options.stats) {
+        nlohmann::ordered_json statistics =
+            statistics_of(options, loaded, capture.renderer(), capture.traced_seconds());
+        statistics["device"] = capture.device_name();
+        write_statistics(*options.stats, statistics);
+    }
+    if (interrupted()) {
+        print_error("interrupted: " + quoted_name(options.output.string()) + " holds what there was of the picture");
+        return exit_interrupted;
+    }
+    return exit_done;
+}
+
 int capture(const Options& options, const LoadedScene& loaded) {
     const bool quiet = options.verbosity == Verbosity::quiet;
     const GracefulInterrupts graceful;
     const Stopwatch watch;
-    Capture capture(options, loaded);
+    Capture capture(options, loaded, [&](Capture& self) { return conclude_capture(options, loaded, self); });
     if (options.verbosity == Verbosity::verbose) print_note("Vulkan device: " + capture.device_name());
 
     View view = opening_view(options, loaded.scene);
@@ -95,17 +127,7 @@ int capture(const Options& options, const LoadedScene& loaded) {
         capture.save(frame);
     }
     if (!interrupted()) capture.trace(view);
-    capture.save(options.output);
-    if (options.stats) {
-        nlohmann::ordered_json statistics =
-            statistics_of(options, loaded, capture.renderer(), capture.traced_seconds());
-        statistics["device"] = capture.device_name();
-        write_statistics(*options.stats, statistics);
-    }
-    if (interrupted()) {
-        print_error("interrupted: " + quoted_name(options.output.string()) + " holds what there was of the picture");
-        return exit_interrupted;
-    }
+    if (const int exit_code = conclude_capture(options, loaded, capture); exit_code != exit_done) return exit_code;
     if (!quiet)
         print_note("captured " + printable(options.output.string()) +
                    (frames > 0 ? " and " + count_text(frames, "frame") : std::string()) + ", " +

@@ -1,8 +1,11 @@
 #include "app/console.h"
 
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +33,27 @@ int write_all(int descriptor, std::string_view text) {
     return 0;
 }
 
+// All that stderr takes within `patience`: nothing said there is worth more than the work.
+void write_error_within(std::chrono::milliseconds patience, std::string_view text) {
+    // A pipe that poll calls writable takes this much without waiting.
+    constexpr std::size_t piece = 512;
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point end = Clock::now() + patience;
+    while (!text.empty()) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+        pollfd place{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+        const int ready = poll(&place, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
+        if (ready == 0) return;
+        if (ready < 0 && errno != EINTR) return;
+        if (ready < 0) continue;
+        const ssize_t count = write(STDERR_FILENO, text.data(), std::min(text.size(), piece));
+        if (count < 0 && errno != EINTR && errno != EAGAIN) return;
+        if (count > 0) text.remove_prefix(static_cast<std::size_t>(count));
+    }
+}
+
+constexpr std::chrono::milliseconds message_patience{500};
+
 // Of messages of the system and of libraries, too, nothing may steer the terminal; their lines stay.
 std::string harmless(std::string_view text) {
     std::string lines;
@@ -49,7 +73,7 @@ std::string coloured(std::string_view text, std::string_view code) {
 }
 
 void print_labelled(std::string_view label, std::string_view colour, std::string_view what) {
-    write_all(STDERR_FILENO, "raywalk: " + coloured(label, colour) + " " + harmless(what) + "\n");
+    write_error_within(message_patience, "raywalk: " + coloured(label, colour) + " " + harmless(what) + "\n");
 }
 
 constexpr std::string_view red = "1;31", magenta = "1;35";
@@ -85,7 +109,9 @@ Console standard_error() {
 
 void print_error(std::string_view what) { print_labelled("error:", red, what); }
 void print_warning(std::string_view what) { print_labelled("warning:", magenta, what); }
-void print_note(std::string_view what) { write_all(STDERR_FILENO, "raywalk: " + harmless(what) + "\n"); }
+void print_note(std::string_view what) { write_error_within(message_patience, "raywalk: " + harmless(what) + "\n"); }
+
+void show_if_ready(std::string_view text) { write_error_within(std::chrono::milliseconds{0}, text); }
 
 void print_diagnostics(std::span<const Diagnostic> diagnostics) {
     std::string text;
@@ -98,7 +124,7 @@ void print_diagnostics(std::span<const Diagnostic> diagnostics) {
                         coloured(label.substr(2, label.size() - 3), is_error ? red : magenta));
         text += one + "\n";
     }
-    write_all(STDERR_FILENO, text);
+    write_error_within(message_patience, text);
 }
 
 void print_result(std::string_view text) {

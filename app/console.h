@@ -17,11 +17,14 @@ struct Console {
 };
 Console standard_error();
 
-// "raywalk: error: what", to stderr, whole lines only.
+// "raywalk: error: what", to stderr, whole lines only. A stderr that nobody reads keeps no message waiting for long.
 void print_error(std::string_view what);
 void print_warning(std::string_view what);
 // "raywalk: what"
 void print_note(std::string_view what);
+
+// `text` as it is, to stderr; what does not fit there at once is dropped.
+void show_if_ready(std::string_view text);
 
 // Each with its line and caret. A diagnostic without its line gets it from the file, if it can be read.
 void print_diagnostics(std::span<const Diagnostic> diagnostics);

@@ -1,25 +1,56 @@
 #include "app/interrupts.h"
 
+#include <poll.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 #include <string_view>
 
 namespace raywalk {
 
 namespace {
 
-// Signal handlers can reach nothing but what is global.
+// Signal handlers can reach nothing but what is global, and no more than async-signal-safe functions.
 std::atomic<bool> flag = false;
 std::atomic<bool> is_graceful = false;
+std::atomic<bool> is_saving = false;
+std::atomic<std::int64_t> first_signal = 0;  // milliseconds of the monotonic clock
+
+// Terminals, wrappers and job systems send a signal twice; within this time it is the same wish.
+constexpr std::int64_t same_wish_milliseconds = 500;
+
+std::int64_t milliseconds_now() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1000000;
+}
+
+// Dropped where stderr takes nothing more: a full pipe that nobody reads would keep the program from ending.
+void say(std::string_view message) {
+    pollfd place{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+    if (poll(&place, 1, 0) != 1) return;
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, message.data(), message.size());
+}
 
 void handle(int) {
-    if (is_graceful && !flag) {
-        flag = true;
-        return;
+    const int error = errno;  // of what was interrupted
+    if (is_graceful) {
+        const std::int64_t now = milliseconds_now();
+        if (!flag.exchange(true)) {
+            first_signal = now;
+            errno = error;
+            return;
+        }
+        if (is_saving || now - first_signal < same_wish_milliseconds) {
+            if (now - first_signal >= same_wish_milliseconds) say("\nraywalk: saving ...\n");
+            errno = error;
+            return;
+        }
     }
-    constexpr std::string_view message = "\nraywalk: interrupted\n";
-    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, message.data(), message.size());
+    say("\nraywalk: interrupted\n");
     _exit(130);
 }
 
@@ -49,6 +80,9 @@ void catch_interrupts() {
 
 GracefulInterrupts::GracefulInterrupts() { is_graceful = true; }
 GracefulInterrupts::~GracefulInterrupts() { is_graceful = false; }
+
+UnbreakableSaving::UnbreakableSaving(bool appears_whole) { is_saving = appears_whole; }
+UnbreakableSaving::~UnbreakableSaving() { is_saving = false; }
 
 const std::atomic<bool>& interrupted() { return flag; }
 

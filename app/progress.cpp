@@ -23,11 +23,6 @@ int terminal_columns() {
     return 80;
 }
 
-// One write for a whole line, so that no half-drawn line is ever seen.
-void write_error(const std::string& text) {
-    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
-}
-
 std::string remaining_text(double fraction, double elapsed_seconds) {
     if (fraction <= 0 || fraction >= 1) return {};
     const double remaining = elapsed_seconds / fraction * (1 - fraction);
@@ -57,22 +52,29 @@ std::string progress_line(double fraction, double elapsed_seconds, int columns) 
     return text;
 }
 
+WorkingTime::Step WorkingTime::step(double seconds) {
+    constexpr double longest_step = 1;  // ten times the usual one: a machine under load is late, too
+    if (seconds > longest_step) return Step::paused;
+    seconds_ += seconds;
+    return Step::worked;
+}
+
 Progress::Style Progress::style_for(bool quiet) {
     if (quiet) return Style::silent;
     return standard_error().rewritable ? Style::bar : Style::lines;
 }
 
 Progress::Progress(Style style, std::uint64_t total)
-    : style_(style), total_(total), start_(std::chrono::steady_clock::now()) {
+    : style_(style), total_(total), last_look_(std::chrono::steady_clock::now()) {
     if (style != Style::silent) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-Progress::~Progress() {
-    if (style_ == Style::silent) return;
+void Progress::finish() {
+    if (!thread_.joinable()) return;
     thread_.request_stop();
     thread_.join();
     if (style_ == Style::lines) show();
-    if (style_ == Style::bar && !line_shown_.empty()) write_error("\r\x1b[K");
+    if (style_ == Style::bar && !line_shown_.empty()) show_if_ready("\r\x1b[K");
 }
 
 void Progress::run(const std::stop_token& stop) {
@@ -86,19 +88,21 @@ void Progress::run(const std::stop_token& stop) {
 void Progress::show() {
     if (style_ == Style::bar) {
         // One column stays free: writing into the last one wraps on some terminals.
-        const std::string line = progress_line(fraction(), elapsed(), terminal_columns() - 1);
+        const double seconds = elapsed();
+        const std::string line = progress_line(fraction(), seconds, terminal_columns() - 1);
         if (line == line_shown_) return;
-        write_error("\r" + line + "\x1b[K");
+        show_if_ready("\r" + line + "\x1b[K");
         line_shown_ = line;
         return;
     }
+    const double seconds = elapsed();
     const int tenths = static_cast<int>(std::floor(fraction() * 10));
     while (tenths_shown_ < tenths) {
         ++tenths_shown_;
         const double shown = tenths_shown_ / 10.0;
         std::string line = std::to_string(tenths_shown_ * 10) + " %";
-        if (tenths_shown_ == tenths && tenths < 10) line += ", " + remaining_text(shown, elapsed());
-        write_error(line + "\n");
+        if (tenths_shown_ == tenths && tenths < 10) line += ", " + remaining_text(shown, seconds);
+        show_if_ready(line + "\n");
     }
 }
 
@@ -108,8 +112,12 @@ double Progress::fraction() const {
                                            static_cast<double>(total_));
 }
 
-double Progress::elapsed() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+double Progress::elapsed() {
+    const auto now = std::chrono::steady_clock::now();
+    const WorkingTime::Step step = working_.step(std::chrono::duration<double>(now - last_look_).count());
+    last_look_ = now;
+    if (step == WorkingTime::Step::paused) line_shown_.clear();  // the shell has written over it
+    return working_.seconds();
 }
 
 }  // namespace raywalk

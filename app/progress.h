@@ -15,6 +15,18 @@ namespace raywalk {
 // `fraction` in [0, 1]; the remaining time is left out until something is done.
 std::string progress_line(double fraction, double elapsed_seconds, int columns);
 
+// The time that a work took without its pauses (Ctrl-Z, a suspended laptop), from the intervals between looks at it.
+class WorkingTime {
+  public:
+    enum class Step { worked, paused };
+    // Adds an interval; one far longer than the usual tenth of a second was a pause and does not count.
+    Step step(double seconds);
+    [[nodiscard]] double seconds() const { return seconds_; }
+
+  private:
+    double seconds_ = 0;
+};
+
 class Progress {
   public:
     enum class Style { silent, lines, bar };
@@ -22,10 +34,12 @@ class Progress {
     static Style style_for(bool quiet);
 
     Progress(Style style, std::uint64_t total);
-    // Ends the display: a bar is wiped off, lines go on to 100 % if the work is complete.
-    ~Progress();
+    ~Progress() { finish(); }
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
+
+    // Ends the display: a bar is wiped off, lines go on to 100 % if the work is complete. Only the first call counts.
+    void finish();
 
     // From any thread.
     void advance(std::uint64_t amount = 1) { done_.fetch_add(amount, std::memory_order_relaxed); }
@@ -34,12 +48,13 @@ class Progress {
     void run(const std::stop_token& stop);
     void show();
     [[nodiscard]] double fraction() const;
-    [[nodiscard]] double elapsed() const;
+    double elapsed();  // seconds of work, without pauses
 
     Style style_;
     std::uint64_t total_;
     std::atomic<std::uint64_t> done_ = 0;
-    std::chrono::steady_clock::time_point start_;
+    std::chrono::steady_clock::time_point last_look_;
+    WorkingTime working_;
     int tenths_shown_ = 0;
     std::string line_shown_;
     std::mutex mutex_;

@@ -1,11 +1,17 @@
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/interrupts.h"
 #include "app/output_files.h"
 #include "app/progress.h"
+#include "app/rescue.h"
 #include "app/statistics.h"
 #include "tracer/description/image.h"
 #include "tracer/ground/stopwatch.h"
+#include "tracer/ground/whole_file.h"
 #include "tracer/kernels/kernels.h"
 #include "tracer/rendering/renderer.h"
 
@@ -16,11 +22,17 @@ namespace {
 // Samples of one pass over the picture. An interrupted picture of many samples is then a noisier one, not half of one.
 constexpr std::uint32_t samples_per_pass = 16;
 
-// Every sample of the picture, with progress; returns early when interrupted.
-void render(Renderer& renderer, std::uint32_t samples, bool quiet) {
+// Every sample of the picture, with progress; returns early when interrupted, and where one step takes long then, ends
+// the program with what `conclude` does and returns.
+void render(Renderer& renderer, std::uint32_t samples, bool quiet, const std::function<int()>& conclude) {
     const auto tiles = static_cast<std::uint64_t>(renderer.film().tiles.size());
     const std::uint64_t passes = (samples + samples_per_pass - 1) / samples_per_pass;
     Progress progress(Progress::style_for(quiet), tiles * passes);
+    const Rescue rescue([&] {
+        progress.finish();
+        renderer.close_film();
+        return conclude();
+    });
     for (std::uint32_t done = 0; done < samples && !interrupted();) {
         done = samples - done <= samples_per_pass ? samples : done + samples_per_pass;
         renderer.render_until(done, interrupted(), [&](int) { progress.advance(); });
@@ -28,6 +40,7 @@ void render(Renderer& renderer, std::uint32_t samples, bool quiet) {
 }
 
 void save(const Renderer& renderer, const Options& options) {
+    const UnbreakableSaving unbreakable(appears_whole(options.output));
     const Film& film = renderer.film();
     if (is_float_extension(options.output)) {
         write_image(options.output, radiance_rows(film), saving_now());
@@ -64,25 +77,10 @@ void print_ray_times(const Renderer& renderer, double seconds) {
                std::string(renderer.kernels().name));
 }
 
-}  // namespace
-
-int render_command(const Options& options, const LoadedScene& loaded) {
+// Saves what there is of the picture and says so; returns the exit code.
+int conclude_picture(const Options& options, const LoadedScene& loaded, const Renderer& renderer, std::uint32_t samples,
+                     double seconds) {
     const bool quiet = options.verbosity == Verbosity::quiet, verbose = options.verbosity == Verbosity::verbose;
-    if (options.exposure && is_float_extension(options.output) && !quiet)
-        print_warning("--exposure changes nothing here: " + options.output.extension().string() +
-                      " files hold linear radiance");
-    if (verbose) print_load_times(loaded);
-
-    const GracefulInterrupts graceful;
-    const Stopwatch watch;
-    Renderer renderer(loaded.compiled, select_kernels(options.isa), options.threads);
-    View view = opening_view(options, loaded.scene);
-    view.camera = pressed(view.camera, options.keys);
-    renderer.set_view(view);
-    const std::uint32_t samples = samples_per_pixel(options, loaded.scene);
-    render(renderer, samples, quiet);
-    const double seconds = watch.seconds();
-
     save(renderer, options);
     if (options.stats) write_statistics(*options.stats, statistics_of(options, loaded, renderer, seconds));
     if (const std::uint64_t dropped = renderer.ray_counts().dropped_samples; dropped > 0 && !quiet)
@@ -101,6 +99,27 @@ int render_command(const Options& options, const LoadedScene& loaded) {
         print_note("rendered " + printable(options.output.string()) + ", " + size_text(renderer.film()) + " pixels, " +
                    count_text(samples, "sample") + " each, in " + duration_text(seconds));
     return exit_done;
+}
+
+}  // namespace
+
+int render_command(const Options& options, const LoadedScene& loaded) {
+    const bool quiet = options.verbosity == Verbosity::quiet, verbose = options.verbosity == Verbosity::verbose;
+    if (options.exposure && is_float_extension(options.output) && !quiet)
+        print_warning("--exposure changes nothing here: " + options.output.extension().string() +
+                      " files hold linear radiance");
+    if (verbose) print_load_times(loaded);
+
+    const GracefulInterrupts graceful;
+    const Stopwatch watch;
+    Renderer renderer(loaded.compiled, select_kernels(options.isa), options.threads);
+    View view = opening_view(options, loaded.scene);
+    view.camera = pressed(view.camera, options.keys);
+    renderer.set_view(view);
+    const std::uint32_t samples = samples_per_pixel(options, loaded.scene);
+    const auto conclude = [&] { return conclude_picture(options, loaded, renderer, samples, watch.seconds()); };
+    render(renderer, samples, quiet, conclude);
+    return conclude();
 }
 
 }  // namespace raywalk

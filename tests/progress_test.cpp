@@ -23,6 +23,14 @@ TEST(Progress, TheLineFitsEveryWidth) {
     EXPECT_EQ(progress_line(0.5, 1, 20), " 50 %, 1.0 s left");
 }
 
+TEST(Progress, APauseDoesNotCountAsWork) {
+    WorkingTime time;
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(time.step(0.1), WorkingTime::Step::worked);
+    EXPECT_EQ(time.step(500), WorkingTime::Step::paused);
+    EXPECT_EQ(time.step(0.1), WorkingTime::Step::worked);
+    EXPECT_NEAR(time.seconds(), 1.1, 1e-9);
+}
+
 TEST(Console, DurationsAreShortAndRounded) {
     EXPECT_EQ(duration_text(0.0081), "8.1 ms");
     EXPECT_EQ(duration_text(0.264), "0.26 s");

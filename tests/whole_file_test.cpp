@@ -55,6 +55,30 @@ TEST(WholeFile, IsThereWhenItIsFinishedAndNotBefore) {
     EXPECT_EQ(files_in(folder.path()), 1u);
 }
 
+TEST(WholeFile, AReplacedFileKeepsItsRights) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "a.txt";
+    for (const mode_t mode : {0600, 0640, 0666}) {
+        write_file(file, "old");
+        chmod(file.c_str(), mode);
+        write_whole(file, "new");
+        struct stat status {};
+        ASSERT_EQ(stat(file.c_str(), &status), 0);
+        EXPECT_EQ(status.st_mode & 0777, mode);
+        EXPECT_EQ(read_file(file), "new");
+    }
+}
+
+TEST(WholeFile, ALinkThatLeadsNowhereYetIsFollowed) {
+    const TemporaryFolder folder;
+    fs::create_symlink("second", folder.path() / "first");
+    fs::create_symlink(folder.path() / "target", folder.path() / "second");
+    write_whole(folder.path() / "first", "new");
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "first"));
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "second"));
+    EXPECT_EQ(read_file(folder.path() / "target"), "new");
+}
+
 TEST(WholeFile, NewFilesHaveTheUsualRights) {
     const TemporaryFolder folder;
     const mode_t mask = umask(022);

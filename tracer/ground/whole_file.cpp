@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -23,8 +24,34 @@ fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.
 fs::path followed(const fs::path& file) {
     std::error_code error;
     if (!fs::is_symlink(file, error)) return file;
-    const fs::path target = fs::weakly_canonical(file, error);
-    return error ? file : target;
+    // Link by link, since what the last one names need not be there yet; as many as the system follows.
+    constexpr int most_links = 40;
+    fs::path target = file;
+    for (int i = 0; i < most_links && fs::is_symlink(target, error); ++i) {
+        const fs::path next = fs::read_symlink(target, error);
+        if (error) return file;
+        target = folder_of(target) / next;  // as it is where `next` is absolute
+    }
+    return target;
+}
+
+// The rights that the new file of `target` starts with; `old` is what it replaces, if there is any.
+mode_t rights_beside(const std::optional<struct stat>& old) { return old ? old->st_mode & 0600 : 0666; }
+
+std::optional<struct stat> status_of(const fs::path& file) {
+    struct stat status {};
+    if (stat(file.c_str(), &status) != 0) return std::nullopt;
+    return status;
+}
+
+// The new file gets owner, group and rights of the old one; what is not allowed stays as it is, but never opens the
+// file to anyone who could not read the old one.
+void copy_rights(int descriptor, const struct stat& old) {
+    const bool same_group = fchown(descriptor, static_cast<uid_t>(-1), old.st_gid) == 0;
+    [[maybe_unused]] const int owner = fchown(descriptor, old.st_uid, static_cast<gid_t>(-1));
+    const mode_t of_others = (old.st_mode & 07) << 3;
+    const mode_t mode = same_group ? old.st_mode & 0777 : old.st_mode & (0707 | of_others);
+    [[maybe_unused]] const int rights = fchmod(descriptor, mode);
 }
 
 bool is_special(const fs::path& file) {
@@ -57,22 +84,47 @@ fs::path free_name_beside(const fs::path& file, const Make& make) {
 }
 
 // A new file in the folder of `target`, without a name; -1 where there is no such thing.
-int open_without_name(const fs::path& target) {
+int open_without_name(const fs::path& target, mode_t rights) {
     // It gets its name by way of /proc.
     if (access("/proc/self/fd", X_OK) != 0) return -1;
-    return open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    return open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, rights);
+}
+
+// Why a rename to `target` would fail although its folder can be written to.
+std::string obstacle_to_replacing(const fs::path& target, const fs::path& folder) {
+    const std::optional<struct stat> old = status_of(target), around = status_of(folder);
+    if (!old || !around) return {};
+    const uid_t self = geteuid();
+    if ((around->st_mode & S_ISVTX) != 0 && self != 0 && old->st_uid != self && around->st_uid != self)
+        return "it is another user's, and in " + quoted_name(folder.string()) + " only its owner may replace it";
+#ifdef STATX_MNT_ID
+    struct statx file {
+    }, place{};
+    if (statx(AT_FDCWD, target.c_str(), 0, STATX_MNT_ID, &file) != 0 ||
+        statx(AT_FDCWD, folder.c_str(), 0, STATX_MNT_ID, &place) != 0)
+        return {};
+    if ((file.stx_attributes & (STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND)) != 0) return "it is marked unchangeable";
+    if ((place.stx_attributes & (STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND)) != 0)
+        return "its folder " + quoted_name(folder.string()) + " is marked unchangeable";
+    if ((file.stx_mask & place.stx_mask & STATX_MNT_ID) != 0 && file.stx_mnt_id != place.stx_mnt_id)
+        return "it is mounted by itself, and cannot be replaced";
+#endif
+    return {};
 }
 
 }  // namespace
 
 WholeFile::WholeFile(fs::path file) : file_(std::move(file)), target_(followed(file_)) {
     if (is_special(target_)) return;
-    descriptor_ = open_without_name(target_);
-    if (descriptor_ >= 0) return;
-    part_ = free_name_beside(target_, [&](const fs::path& free) {
-        return descriptor_ = open(free.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    });
-    if (part_.empty()) fail(errno);
+    const std::optional<struct stat> old = status_of(target_);
+    descriptor_ = open_without_name(target_, rights_beside(old));
+    if (descriptor_ < 0) {
+        part_ = free_name_beside(target_, [&](const fs::path& free) {
+            return descriptor_ = open(free.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, rights_beside(old));
+        });
+        if (part_.empty()) fail(errno);
+    }
+    if (old) copy_rights(descriptor_, *old);
 }
 
 WholeFile::~WholeFile() {
@@ -147,6 +199,8 @@ void write_whole(const fs::path& file, std::string_view bytes, Durability durabi
     whole.finish(durability);
 }
 
+bool appears_whole(const fs::path& file) { return !is_special(followed(file)); }
+
 std::string obstacle_to_writing(const fs::path& file) {
     std::error_code error;
     if (fs::is_directory(file, error)) return "it is a folder";
@@ -161,7 +215,7 @@ std::string obstacle_to_writing(const fs::path& file) {
     if (!fs::is_directory(folder, error)) return quoted_name(folder.string()) + " is not a folder";
     if (access(folder.c_str(), W_OK | X_OK) != 0)
         return "its folder " + quoted_name(folder.string()) + ": " + std::generic_category().message(errno);
-    return {};
+    return obstacle_to_replacing(target, folder);
 }
 
 }  // namespace raywalk

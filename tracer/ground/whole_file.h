@@ -18,7 +18,9 @@ enum class Durability {
 // so that whatever happens on the way, `file` is the old one or the whole new one. The new file has no name until it
 // is whole (where the file system can), so that a killed program leaves nothing behind; only between the last two
 // steps, naming and renaming, it leaves the whole new file as .NAME-PID-0.part. A `file` that is a device or pipe
-// (/dev/null) is written to directly, in the end. Every function throws WorkError naming the file and the reason.
+// (/dev/null) is written to directly, in the end. A file that is replaced keeps its rights, and its owner and group
+// where that is allowed; where it is a link, what it leads to is replaced or made. Every function throws WorkError
+// naming the file and the reason.
 class WholeFile {
   public:
     explicit WholeFile(std::filesystem::path file);
@@ -48,6 +50,9 @@ class WholeFile {
 // The same in one step.
 void write_whole(const std::filesystem::path& file, std::string_view bytes,
                  Durability durability = Durability::on_disk);
+
+// Whether a WholeFile of this name appears whole: it is no device and no pipe.
+bool appears_whole(const std::filesystem::path& file);
 
 // Why a file of this name could not be made ("its folder 'x' does not exist"); empty when it seems that it could.
 std::string obstacle_to_writing(const std::filesystem::path& file);

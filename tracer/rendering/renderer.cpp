@@ -35,8 +35,8 @@ void Renderer::set_view(const View& view) {
 
 // A pixel's samples are added in the order 0, 1, 2, ... whatever the visits and threads: same sums, bit for bit.
 bool Renderer::render_tile(int tile, std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
-                           TileScratch& scratch, RayCounts& counts) {
-    FilmTile& sums = film_.tiles[static_cast<std::size_t>(tile)];
+                           TileScratch& scratch) {
+    FilmTile sums = film_.tiles[static_cast<std::size_t>(tile)];
     std::uint32_t& done = film_.samples[static_cast<std::size_t>(tile)];
     while (done < samples_per_pixel) {
         if (cancel.load(std::memory_order_relaxed)) return false;
@@ -50,7 +50,12 @@ bool Renderer::render_tile(int tile, std::uint32_t samples_per_pixel, const std:
                           .y = tile / film_.tiles_x * tile_size,
                           .first_sample = done,
                           .sample_count = std::min(samples_per_pixel - done, samples_per_visit)};
+        RayCounts counts;
         kernels_->trace_tile(job, scratch, sums, counts);
+        const std::lock_guard lock(commit_);
+        if (is_closed_) return false;
+        film_.tiles[static_cast<std::size_t>(tile)] = sums;
+        counts_ += counts;
         done += job.sample_count;
     }
     return true;
@@ -59,32 +64,33 @@ bool Renderer::render_tile(int tile, std::uint32_t samples_per_pixel, const std:
 bool Renderer::render_until(std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
                             const std::function<void(int)>& tile_done) {
     TileShares shares(static_cast<int>(film_.tiles.size()), threads_);
-    RayCounts counts;
     bool cancelled = false;
 
 #pragma omp parallel num_threads(threads_)
     {
         const int thread = omp_get_thread_num();
         TileScratch& scratch = *scratch_[static_cast<std::size_t>(thread)];
-        RayCounts own_counts;
         bool own_cancelled = false;
         for (auto tiles = shares.take(thread); tiles.begin < tiles.end && !own_cancelled; tiles = shares.take(thread))
             for (int tile = tiles.begin; tile < tiles.end && !own_cancelled; ++tile) {
                 if (film_.samples[static_cast<std::size_t>(tile)] >= samples_per_pixel) continue;
-                own_cancelled = !render_tile(tile, samples_per_pixel, cancel, scratch, own_counts);
+                own_cancelled = !render_tile(tile, samples_per_pixel, cancel, scratch);
                 if (!own_cancelled && tile_done) tile_done(tile);
             }
 #pragma omp critical
-        {
-            counts += own_counts;
-            cancelled |= own_cancelled;
-        }
+        cancelled |= own_cancelled;
     }
 
-    counts_ += counts;
+    const std::lock_guard lock(commit_);
+    if (is_closed_) return false;
     samples_ =
         film_.samples.empty() ? samples_per_pixel : *std::min_element(film_.samples.begin(), film_.samples.end());
     return !cancelled;
+}
+
+void Renderer::close_film() {
+    const std::lock_guard lock(commit_);
+    is_closed_ = true;
 }
 
 std::vector<std::uint8_t> display_values(const Film& film, const Kernels& kernels, float exposure) {

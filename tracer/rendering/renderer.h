@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <mutex>
 #include <vector>
 
 #include "tracer/compiled/compiled_scene.h"
@@ -35,6 +36,11 @@ class Renderer {
     bool render_until(std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
                       const std::function<void(int)>& tile_done = {});
 
+    // From any thread while render_until is on its way: from now on nothing changes the film and the counts, which hold
+    // whole visits to tiles only. For a program that ends without waiting for the tracing threads; there is no way
+    // back.
+    void close_film();
+
     [[nodiscard]] const Film& film() const { return film_; }
     [[nodiscard]] std::uint32_t samples() const { return samples_; }  // that every tile has
     [[nodiscard]] const RayCounts& ray_counts() const { return counts_; }
@@ -43,8 +49,7 @@ class Renderer {
 
   private:
     // False when `cancel` was set before the tile had all its samples.
-    bool render_tile(int tile, std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel, TileScratch& scratch,
-                     RayCounts& counts);
+    bool render_tile(int tile, std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel, TileScratch& scratch);
 
     const CompiledScene* scene_;
     const Kernels* kernels_;
@@ -54,6 +59,8 @@ class Renderer {
     std::uint32_t samples_ = 0;
     RayCounts counts_;
     std::vector<TileScratchPointer> scratch_;  // one per thread
+    std::mutex commit_;                        // held while a visit's results enter film and counts
+    bool is_closed_ = false;                   // under commit_
 };
 
 // Display values of a film, 3 bytes a pixel, rows from the top: round(255 clamp(mean * exposure)), by the same
