@@ -23,8 +23,8 @@ using namespace std::chrono_literals;
 
 constexpr auto look_interval = 25ms, rescue_patience = 250ms;
 
-// False when the work returned meanwhile.
-bool wait(const std::stop_token& stop, std::chrono::milliseconds time) {
+// Whether the work goes on after that time; false as soon as it returns.
+bool still_working(const std::stop_token& stop, std::chrono::milliseconds time) {
     std::mutex mutex;
     std::condition_variable_any wake;
     std::unique_lock lock(mutex);
@@ -45,8 +45,8 @@ Rescue::~Rescue() = default;
 
 void Rescue::watch(const std::stop_token& stop) const {
     while (!interrupted())
-        if (!wait(stop, look_interval)) return;
-    if (!wait(stop, rescue_patience)) return;
+        if (!still_working(stop, look_interval)) return;
+    if (!still_working(stop, rescue_patience)) return;
     int exit_code = exit_failed;
     try {
         omp_set_num_threads(1);  // of this thread's loops: the others are busy, and there may be no more
