@@ -2,7 +2,7 @@
 # already there. The caller sets `root`, the folder of the project. All talk goes to stderr.
 
 build_packages=(g++ cmake ninja-build pkg-config libvulkan-dev libglfw3-dev libglm-dev glslang-tools libopenimageio-dev
-    libpng-dev libjpeg-dev libhwy-dev libfast-float-dev nlohmann-json3-dev)
+    libpng-dev libjpeg-dev libhwy-dev libfast-float-dev nlohmann-json3-dev libcli11-dev)
 test_packages=(libgtest-dev libgmock-dev libx11-dev libxtst-dev vulkan-validationlayers xvfb xauth xdotool imagemagick
     openimageio-tools)
 bench_packages=(libembree-dev libtinyobjloader-dev libassimp-dev)

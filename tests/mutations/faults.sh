@@ -81,6 +81,12 @@ fault "a step of a turned view goes the old way" app/walk/walk.cpp \
 fault "counts in a walk script are passed over" app/walk/walk_script.cpp \
     'counted ? count : 1' '1' \
     app_tests 'WalkScript.*'
+fault "a forgotten value swallows the next option" app/command_line/options.cpp \
+    "word.starts_with('-') && app.get_option_no_throw(word) != nullptr" 'false' \
+    app_tests 'Options.WhatIsMissingIsNamed'
+fault "the values of switches are passed over" app/command_line/options.cpp \
+    'option->get_items_expected_max() == 0' 'false' \
+    app_tests 'Options.WhatIsTooMuchIsNamed'
 
 # Kernels: what rays hit.
 fault "triangles reach beyond their third edge" tracer/kernels/traversal/ray_shapes.h \

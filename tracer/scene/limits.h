@@ -1,4 +1,4 @@
-// Budgets that hostile input cannot exceed; each can be raised by an option and is named in its error.
+// Budgets that hostile input cannot exceed; nearly all can be raised by an option, which their error names.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,6 @@ inline constexpr LimitOption limit_options[] = {
     {"--max-image-bytes", &Limits::image_bytes, "bytes of an image file"},
     {"--max-image-pixels", &Limits::image_pixels, "pixels of one texture"},
     {"--max-all-image-pixels", &Limits::all_image_pixels, "pixels of all textures together"},
-    {"--max-image-pixels-per-byte", &Limits::image_pixels_per_byte,
-     "pixels that one byte of an image file may promise"},
     {"--max-errors", &Limits::errors, "mistakes reported before giving up"},
 };
 

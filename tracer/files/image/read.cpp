@@ -85,10 +85,11 @@ Image decode_image(std::string_view bytes, const fs::path& file, const Limits& l
     const std::uint64_t pixels = std::uint64_t{reply.width} * reply.height;
     if (reply.status == ImageReply::too_large) {
         const bool packed = pixels > plausible;
-        throw refusal(file, where,
-                      "claims " + std::to_string(reply.width) + " x " + std::to_string(reply.height) + " pixels, " +
-                          (packed ? "more than so small a file can hold" : "which is too large"),
-                      how_to_raise(limits, packed ? &Limits::image_pixels_per_byte : &Limits::image_pixels));
+        throw refusal(
+            file, where,
+            "claims " + std::to_string(reply.width) + " x " + std::to_string(reply.height) + " pixels, " +
+                (packed ? "more than so small a file can hold" : "which is too large"),
+            packed ? "save it smaller, or with less compression" : how_to_raise(limits, &Limits::image_pixels));
     }
     return texels_of(result, file, where);
 }
