@@ -34,6 +34,12 @@ fault "negative indices are off by one" tracer/files/mesh/obj_chunk.cpp \
 fault "polygons are strips" tracer/files/mesh/obj_chunk.cpp \
     'if (count == 0) first = corner;' 'first = previous;' \
     files_tests 'ObjTest.PolygonsAreFansFromTheirFirstCorner'
+fault "neighbours wound alike are told apart" tracer/compiled/winding.cpp \
+    'turned[face] ^ (same_direction(mesh, edge, other) ? 1 : 0)' 'turned[face] ^ 1' \
+    compiled_tests 'Winding.*'
+fault "closed meshes point inwards" tracer/compiled/winding.cpp \
+    'if (volume < 0 ||' 'if (volume > 0 ||' \
+    compiled_tests 'Winding.FacesOfAClosedMeshPointOutwards'
 
 # Writers of pictures.
 fault "pictures hold the date" helpers/image/openimageio.cpp \

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "tracer/compiled/winding.h"
 #include "tracer/scene/limits.h"
 
 namespace raywalk {
@@ -43,6 +44,12 @@ double farthest_from(const TriangleMesh& mesh, const glm::dvec3& point) {
     return std::sqrt(farthest);
 }
 
+// Does some corner take its normal from the faces around it?
+bool lacks_normals(const TriangleMesh& mesh) {
+    const auto lacks = [](const std::array<std::int32_t, 3>& corners) { return std::ranges::min(corners) < 0; };
+    return mesh.normal_faces.empty() || std::ranges::any_of(mesh.normal_faces, lacks);
+}
+
 // Of each vertex, the mean of the unit normals of the faces around it as a unit vector; zero where it has no direction.
 std::vector<glm::dvec3> vertex_directions(const TriangleMesh& mesh, const std::vector<glm::dvec3>& face_normals) {
     // In the order of the faces, on one thread: the same sums for any number of threads.
@@ -76,6 +83,11 @@ void corner_normals(const TriangleMesh& mesh, std::span<VertexNormals> normals) 
     for (std::size_t f = 0; f < faces; ++f) {
         const auto& [a, b, c] = mesh.faces[f];
         face_normals[f] = face_direction(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+    }
+    if (lacks_normals(mesh)) {
+        const std::vector<std::uint8_t> turned = faces_to_turn(mesh);
+        for (std::size_t f = 0; f < turned.size(); ++f)
+            if (turned[f] != 0) face_normals[f] = -face_normals[f];
     }
     const std::vector<glm::dvec3> of_vertex = vertex_directions(mesh, face_normals);
 #pragma omp parallel for schedule(static) if (faces >= worth_threads)

@@ -22,7 +22,8 @@ glm::vec3 limited(const glm::dvec3& point);
 std::vector<glm::vec3> placed_positions(const TriangleMesh& mesh, const glm::dvec3& center, double radius);
 
 // Unit normals of each face's three corners: the file's own where it has them, else the unweighted mean of the unit
-// normals of the faces around the vertex, else (a mean of zero) the face's own.
+// normals of the faces around the vertex, neighbours agreeing on their sides (winding.h), else (a mean of zero) the
+// face's own.
 std::vector<VertexNormals> corner_normals(const TriangleMesh& mesh);
 void corner_normals(const TriangleMesh& mesh, std::span<VertexNormals> normals);  // one per face
 
