@@ -24,7 +24,8 @@ bool ordinary(const glm::dvec3& v) {
 }
 
 void check_diagnostics(const std::vector<Diagnostic>& diagnostics, std::string_view input, const Limits& limits) {
-    const auto lines = static_cast<std::size_t>(std::ranges::count(input, '\n')) + 1;
+    const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+    const auto lines = static_cast<std::size_t>(std::ranges::count_if(input, ends_line)) + 1;
     require(diagnostics.size() <= limits.errors + 1, "no more errors than wanted");
     for (const Diagnostic& d : diagnostics) {
         require(!d.what.empty(), "an error says what is wrong");
@@ -72,6 +73,10 @@ void obj(std::string_view input) {
         for (const auto& face : mesh.normal_faces)
             for (const std::int32_t corner : face)
                 require(corner < static_cast<std::int32_t>(mesh.normals.size()) && corner >= -1, "normals in range");
+        std::vector<bool> named(mesh.positions.size());
+        for (const auto& face : mesh.faces)
+            for (const std::uint32_t corner : face) named[corner] = true;
+        require(std::ranges::count(named, false) == 0, "each vertex in a face");
         for (const glm::vec3& p : mesh.positions)
             require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "finite vertices");
     } catch (const InputError& error) {

@@ -29,11 +29,47 @@ fault "more values than wanted are passed over" tracer/files/scene_text/values.c
     'if (!failed_ && more()) {' 'if (false) {' \
     files_tests '*BadFile*'
 fault "negative indices are off by one" tracer/files/mesh/obj_chunk.cpp \
-    'static_cast<std::uint32_t>(count) - small)' 'static_cast<std::uint32_t>(count) - small + 1)' \
+    'static_cast<std::uint32_t>(count) - value)' 'static_cast<std::uint32_t>(count) - value + 1)' \
     files_tests 'ObjTest.EveryIndexFormNamesTheSameTriangle'
 fault "polygons are strips" tracer/files/mesh/obj_chunk.cpp \
     'if (count == 0) first = corner;' 'first = previous;' \
     files_tests 'ObjTest.PolygonsAreFansFromTheirFirstCorner'
+fault "a byte order mark is part of a word" tracer/files/mesh/obj_chunk.cpp \
+    'if (word.starts_with(byte_order_mark)) {' 'if (false) {' \
+    files_tests 'ObjFlaws.AByteOrderMarkLosesNoVertex'
+fault "names are continued" tracer/files/mesh/obj_chunk.cpp \
+    'word == "vt" || is_number_statement(word)' 'word == "vt" || is_number_statement(word) || is_name_statement(word)' \
+    files_tests 'ObjFlaws.ABackslashOfANameOrACommentContinuesNothing'
+fault "blanks behind a backslash end its line" tracer/files/mesh/obj_cursor.cpp \
+    'while (is_blank(*newline)) ++newline;' 'while (*newline == 13) ++newline;' \
+    files_tests 'ObjTest.EveryIndexFormNamesTheSameTriangle'
+fault "comments need a blank before them" tracer/files/mesh/obj_words.cpp \
+    "(stop == at || is_digit(stop[-1]) || stop[-1] == '/')" '(stop == at)' \
+    files_tests 'ObjFlaws.CommentsBehindDataAreIgnored'
+fault "vertices that cannot be read have no number" tracer/files/mesh/obj_chunk.cpp \
+    'out_.positions.emplace_back(std::numeric_limits<float>::quiet_NaN());' '' \
+    files_tests 'ObjFlaws.AVertexThatCannotBeReadKeepsItsNumber'
+fault "carriage returns end no line" tracer/files/mesh/obj_reader.cpp \
+    'if (chunk->lone_returns) {' 'if (false) {' \
+    files_tests 'ObjFlaws.CarriageReturnsEndLines'
+fault "normals that cannot be read count" tracer/files/mesh/obj_reader.cpp \
+    'flaws_.count(ObjFlaw::empty_normal) + flaws_.count(ObjFlaw::normal)' 'flaws_.count(ObjFlaw::empty_normal)' \
+    files_tests 'ObjFlaws.NormalsThatAreNoneComeFromTheFaces'
+fault "vertices that no face names are kept" tracer/files/mesh/obj_reader.cpp \
+    'if (unnamed_ == 0) return;' 'return;' \
+    files_tests 'ObjFlaws.VerticesThatNoFaceNamesAreLeftOut'
+fault "a guessed origin stays" tracer/files/mesh/obj_reader.cpp \
+    'return wanted_far && is_far && good' 'return is_far && good' \
+    files_tests 'ObjOrigin.MeshesNearTheOriginKeepTheirBits'
+fault "maps are near the origin" tracer/files/mesh/obj_origin.cpp \
+    'constexpr double far = 16;' 'constexpr double far = 1e9;' \
+    files_tests 'ObjOrigin.MeshesInCoordinatesOfAMapAreNotRoundedToSteps'
+fault "every fan fits" tracer/files/mesh/polygons.cpp \
+    'return least < -0x1p-22 * largest * reach;' 'return false;' \
+    files_tests 'Polygons.ConcaveOnesAreFilled'
+fault "corners on an ear's border are passed over" tracer/files/mesh/ear_clipping.cpp \
+    'if (!touching_blocks_) return false;' 'return false;' \
+    files_tests 'Polygons.*'
 fault "neighbours wound alike are told apart" tracer/compiled/winding.cpp \
     'turned[face] ^ (same_direction(mesh, edge, other) ? 1 : 0)' 'turned[face] ^ 1' \
     compiled_tests 'Winding.*'

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace raywalk {
 
@@ -48,10 +49,11 @@ inline constexpr std::uint64_t whole_power_of_ten[] = {1,       10,        100, 
 inline constexpr double power_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                           1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-// The float nearest to the number at p, [+-]digits[.digits][e[+-]digits], and where it ends. nullptr if there is none,
-// or if it has so many digits, or so large an exponent, or lies so near the middle of two floats that only more
-// precision can tell (fast_float has it).
-inline const char* read_decimal(const char* p, float& value) {
+// The float or double nearest to the number at p, [+-]digits[.digits][e[+-]digits], and where it ends. nullptr if there
+// is none, or if it has so many digits, or so large an exponent, or lies so near the middle of two floats that only
+// more precision can tell (fast_float has it).
+template <class Real>
+inline const char* read_decimal(const char* p, Real& value) {
     const bool negative = *p == '-';
     p += negative || *p == '+';
 
@@ -88,13 +90,18 @@ inline const char* read_decimal(const char* p, float& value) {
     if (exponent < -22 || exponent > 18) return nullptr;
     const auto read = static_cast<double>(static_cast<std::int64_t>(digits));
     const double scaled = exponent < 0 ? read / power_of_ten[-exponent] : read * power_of_ten[exponent];
+    if constexpr (std::is_same_v<Real, double>) {
+        if (digits >> 53 != 0) return nullptr;
+        value = negative ? -scaled : scaled;  // rounded once
+        return p;
+    }
     // Rounded twice (once if digits < 2^53), `scaled` is off by less than two units in its last place. The number
     // itself then lies on the same side of every middle of two floats, so that both round to one float, unless `scaled`
     // is this close to such a middle: a one followed by 28 zeros in the 29 bits that a float lacks.
     constexpr std::uint64_t lacking = (1u << 29) - 1, middle = 1u << 28;
     const std::uint64_t rest = std::bit_cast<std::uint64_t>(scaled) & lacking;
     if (rest - (middle - 4) <= 8) return nullptr;
-    const float magnitude = static_cast<float>(scaled);
+    const auto magnitude = static_cast<Real>(scaled);
     value = negative ? -magnitude : magnitude;
     return p;
 }

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <string>
 #include <string_view>
 #include <vector>
+
+#include "tracer/files/mesh/obj_flaws.h"
+#include "tracer/files/mesh/polygons.h"
 
 namespace raywalk {
 
@@ -19,31 +21,43 @@ inline constexpr std::uint32_t no_index = 0xFFFF'FFFFu;
 // Longer lists of vertices or normals would not fit beside the bit.
 inline constexpr std::uint64_t most_indexed = 0x3FFF'FFFFu;
 
-// A mistake, or a warning, at a place of a chunk.
-struct ObjRemark {
-    std::size_t line, column, length;  // line from 0 in the chunk, column from 1
-    std::string_view source_line;
-    std::string what, expected;
+// An index of a chunk as one into the whole file's list, in which `start` entries come before the chunk. What would be
+// below 0 is larger than any list is long.
+inline std::uint32_t absolute_index(std::uint32_t index, std::size_t start) {
+    return index & relative_index ? static_cast<std::uint32_t>(start) + (index & ~relative_index) - relative_bias
+                                  : index;
+}
+
+// What a first reading of the whole file found out: with it, a second one tests every corner.
+struct ObjCensus {
+    std::size_t vertices, normals;
+    std::vector<std::uint32_t> lost_vertices;  // that cannot be read; ascending
+};
+
+// How to read a chunk.
+struct ObjReading {
+    std::uint64_t most_faces;
+    glm::dvec3 origin = glm::dvec3(0);  // taken off each vertex before it is rounded
+    const ObjCensus* census = nullptr;  // and then how many of each come before the chunk
+    std::size_t vertices_before = 0, normals_before = 0;
 };
 
 struct ObjChunk {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;  // of lengths whose squares single precision holds, or 0
+    std::vector<glm::vec3> positions;  // NaN where one cannot be read
+    std::vector<glm::vec3> normals;    // of lengths whose squares single precision holds, or 0
     std::vector<std::array<std::uint32_t, 3>> faces;
     std::vector<std::array<std::uint32_t, 3>> normal_faces;  // empty, or one per face; no_index where a corner has none
+    PolygonRuns polygons;                                    // of more than three corners, as fans among the faces
+    std::vector<std::uint32_t> lost_vertices;                // among the positions
     std::size_t lines = 0;
-    std::size_t empty_normals = 0;  // normals of length 0
-    std::vector<ObjRemark> errors;
-    std::vector<ObjRemark> unknown_words;  // the first, if any
+    ObjFlaws flaws;
+    bool lone_returns = false;  // a carriage return that ends a line was seen: the lines are others
 
     void clear();  // the lists keep their memory for the next chunk
 };
 
 // Parses whole lines into `into`, whose memory is used again. The newlines of FileBytes must follow the last text in
-// memory. Stops after `most_errors` errors or more than `most_faces` faces.
-void parse_obj_chunk(std::string_view text, std::uint64_t most_faces, std::uint64_t most_errors, ObjChunk& into);
-
-// Where corner 0..2 of triangle number `face` of a chunk stands; of its `normal`, if so asked.
-ObjRemark locate_obj_corner(std::string_view text, std::size_t face, int corner, bool normal);
+// memory. Stops after more than reading.most_faces faces.
+void parse_obj_chunk(std::string_view text, const ObjReading& reading, ObjChunk& into);
 
 }  // namespace raywalk

@@ -3,15 +3,22 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <exception>
+#include <glm/common.hpp>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <mutex>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "tracer/files/blank.h"
 #include "tracer/files/mesh/obj_chunk.h"
+#include "tracer/files/mesh/obj_origin.h"
+#include "tracer/files/mesh/obj_words.h"
+#include "tracer/files/mesh/polygons.h"
 #include "tracer/ground/file_bytes.h"
 
 namespace raywalk {
@@ -26,13 +33,10 @@ struct Base {
     std::size_t position = 0, normal = 0, face = 0, line = 0;
 };
 
-// A piece of the text, and what is kept of it when its lists are in the mesh.
+// A piece of the text.
 struct Piece {
     std::string_view text;
     Base base = {};
-    std::vector<ObjRemark> errors = {}, unknown_words = {};
-    // One more than the largest indices of its corners, for a test when all vertices and normals are counted.
-    std::uint64_t positions_named = 0, normals_named = 0;
 };
 
 // Cuts text into pieces of about chunk_bytes that end with a line (never inside a continued one).
@@ -43,7 +47,7 @@ std::vector<Piece> cut(std::string_view text) {
         while (end < text.size()) {
             const std::size_t newline = std::min(text.find('\n', end), text.size());
             std::size_t last = newline;
-            while (last > 0 && text[last - 1] == '\r') --last;
+            while (last > 0 && is_blank(text[last - 1])) --last;
             end = std::min(newline + 1, text.size());
             if (last == 0 || text[last - 1] != '\\') break;
         }
@@ -53,20 +57,13 @@ std::vector<Piece> cut(std::string_view text) {
     return pieces;
 }
 
-// An index of a chunk as one into the whole file's list, in which `start` entries come before the chunk. What would be
-// below 0 is larger than any list is long.
-std::uint32_t absolute(std::uint32_t index, std::size_t start) {
-    return index & relative_index ? static_cast<std::uint32_t>(start) + (index & ~relative_index) - relative_bias
-                                  : index;
-}
-
 // Makes all indices absolute. Returns one more than the largest.
 std::uint64_t make_absolute(std::vector<std::array<std::uint32_t, 3>>& faces, std::size_t start) {
     std::uint64_t end = 0;
     for (auto& face : faces) {
         for (std::uint32_t& index : face) {
             if (index == no_index) continue;
-            index = absolute(index, start);
+            index = absolute_index(index, start);
             end = std::max(end, std::uint64_t{index} + 1);
         }
     }
@@ -83,38 +80,55 @@ void make_room(std::vector<T>& list, std::size_t more, double pieces_left) {
     list.reserve(std::max(list.size() + more + static_cast<std::size_t>(expected), 2 * list.size()));
 }
 
+struct Box {
+    glm::vec3 lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
+
+    // Not by one that is NaN: it cannot be read.
+    void grow(const glm::vec3& p) {
+        lower = glm::min(lower, p);
+        upper = glm::max(upper, p);
+    }
+};
+
 class Assembly {
   public:
-    Assembly(std::string_view text, const std::filesystem::path& file, const Limits& limits)
-        : text_(text), pieces_(cut(text)), file_(file.string()), limits_(limits), parsed_(pieces_.size()) {}
+    // `bytes`: where single carriage returns end lines, they become newlines.
+    Assembly(FileBytes& bytes, const std::filesystem::path& file, const Limits& limits)
+        : bytes_(bytes),
+          text_(bytes.text()),
+          pieces_(cut(text_)),
+          file_(file.string()),
+          limits_(limits),
+          origin_(likely_origin(text_)),
+          parsed_(pieces_.size()) {}
 
     TriangleMesh run(std::vector<Diagnostic>& warnings);
 
   private:
+    void read();
     void parse_pieces();
     [[nodiscard]] std::unique_ptr<ObjChunk> spare_chunk();
     void append_in_order(std::size_t piece, std::unique_ptr<ObjChunk> chunk);
     void append(Piece& piece, ObjChunk& chunk);
-    void append_faces(ObjChunk& chunk, Piece& piece, double pieces_left);
-    void require_no_errors() const;
+    void append_faces(ObjChunk& chunk, const Piece& piece, double pieces_left);
     void require_counts() const;
-    void require_indices() const;
-    void drop_empty_normals(std::vector<Diagnostic>& warnings);
-    [[nodiscard]] Diagnostic diagnostic(Severity severity, const ObjRemark& remark, const Piece& piece) const;
+    void require_faces() const;
+    void mark_named(const std::vector<std::array<std::uint32_t, 3>>& faces);
+    [[nodiscard]] Box box_of_named() const;
+    [[nodiscard]] bool names_what_is_not_there() const;
+    [[nodiscard]] glm::dvec3 better_origin() const;
+    void drop_useless_normals();
+    void drop_unnamed_vertices();
+    void cut_polygons(std::vector<Diagnostic>& warnings);
 
-    // A corner that names a vertex, or a normal, that does not exist.
-    struct BadCorner {
-        std::size_t face;
-        int corner;
-        bool normal;
-    };
-    [[nodiscard]] BadCorner find_bad_corner(const Piece& piece) const;
-    [[nodiscard]] Diagnostic out_of_range(const Piece& piece, const BadCorner& bad) const;
-
+    FileBytes& bytes_;
     std::string_view text_;
     std::vector<Piece> pieces_;
     std::string file_;
     const Limits& limits_;
+    glm::dvec3 origin_;                // of the positions
+    std::optional<ObjCensus> census_;  // once it is needed
+    int readings_ = 0;
     std::atomic<std::uint64_t> faces_{0};  // of the pieces parsed so far
 
     std::mutex mutex_;                               // guards the four below
@@ -123,18 +137,18 @@ class Assembly {
     std::size_t next_ = 0;                           // to be appended
     bool appending_ = false;                         // some thread does it: the members below are its own
 
+    // Of the pieces appended so far.
     TriangleMesh mesh_;
-    Base total_;                     // of the pieces appended so far
-    std::size_t empty_normals_ = 0;  // of the pieces appended so far
+    PolygonRuns polygons_;
+    std::vector<std::uint32_t> lost_vertices_;
+    ObjFlaws flaws_;
+    Base total_;
+    Box box_;  // of all vertices
+    // One more than the largest indices of the corners.
+    std::uint64_t positions_named_ = 0, normals_named_ = 0;
+    std::vector<std::uint8_t> named_;  // by vertex: does a face name it?
+    std::size_t unnamed_ = 0;          // when all is read
 };
-
-Diagnostic Assembly::diagnostic(Severity severity, const ObjRemark& remark, const Piece& piece) const {
-    Diagnostic d = error_at({file_, piece.base.line + remark.line + 1, remark.column, remark.length}, remark.what,
-                            remark.expected);
-    d.severity = severity;
-    quote_line(d, remark.source_line);
-    return d;
-}
 
 // Each thread parses a piece into a chunk that stays in its cache. The chunks go into the mesh one after the other, in
 // the order of the text, while other threads parse on.
@@ -146,7 +160,17 @@ void Assembly::parse_pieces() {
         if (stop) continue;
         try {
             std::unique_ptr<ObjChunk> chunk = spare_chunk();
-            parse_obj_chunk(pieces_[i].text, limits_.triangles, limits_.errors, *chunk);
+            const Piece& piece = pieces_[i];
+            const ObjReading reading{.most_faces = limits_.triangles,
+                                     .origin = origin_,
+                                     .census = census_ ? &*census_ : nullptr,
+                                     .vertices_before = piece.base.position,
+                                     .normals_before = piece.base.normal};
+            parse_obj_chunk(piece.text, reading, *chunk);
+            if (chunk->lone_returns) {
+                unify_line_ends(bytes_.data() + (piece.text.data() - text_.data()), piece.text.size());
+                parse_obj_chunk(piece.text, reading, *chunk);
+            }
             if ((faces_ += chunk->faces.size()) > limits_.triangles) stop = true;  // broken whatever follows
             append_in_order(i, std::move(chunk));
         } catch (...) {
@@ -185,29 +209,32 @@ void Assembly::append_in_order(std::size_t i, std::unique_ptr<ObjChunk> chunk) {
 // Moves a chunk's lists into the mesh, its indices made absolute.
 void Assembly::append(Piece& piece, ObjChunk& chunk) {
     piece.base = total_;
-    piece.errors = std::move(chunk.errors);
-    piece.unknown_words = std::move(chunk.unknown_words);
+    flaws_.append(chunk.flaws, total_.line);
+    polygons_.append(chunk.polygons, total_.face);
+    for (const std::uint32_t lost : chunk.lost_vertices)
+        lost_vertices_.push_back(static_cast<std::uint32_t>(total_.position + lost));
     total_ = {total_.position + chunk.positions.size(), total_.normal + chunk.normals.size(),
               total_.face + chunk.faces.size(), total_.line + chunk.lines};
-    empty_normals_ += chunk.empty_normals;
     const auto left = static_cast<double>(text_.data() + text_.size() - piece.text.data());
     const double pieces_left = left / static_cast<double>(piece.text.size());
     make_room(mesh_.positions, chunk.positions.size(), pieces_left);
     mesh_.positions.insert(mesh_.positions.end(), chunk.positions.begin(), chunk.positions.end());
     make_room(mesh_.normals, chunk.normals.size(), pieces_left);
     mesh_.normals.insert(mesh_.normals.end(), chunk.normals.begin(), chunk.normals.end());
+    for (const glm::vec3& p : chunk.positions) box_.grow(p);
     append_faces(chunk, piece, pieces_left);
 }
 
-void Assembly::append_faces(ObjChunk& chunk, Piece& piece, double pieces_left) {
-    piece.positions_named = make_absolute(chunk.faces, piece.base.position);
+void Assembly::append_faces(ObjChunk& chunk, const Piece& piece, double pieces_left) {
+    positions_named_ = std::max(positions_named_, make_absolute(chunk.faces, piece.base.position));
+    mark_named(chunk.faces);
     make_room(mesh_.faces, chunk.faces.size(), pieces_left);
     mesh_.faces.insert(mesh_.faces.end(), chunk.faces.begin(), chunk.faces.end());
     if (chunk.normal_faces.empty() && mesh_.normal_faces.empty()) return;
 
     using Corners = std::array<std::int32_t, 3>;
     static_assert(static_cast<std::int32_t>(no_index) == -1);
-    piece.normals_named = make_absolute(chunk.normal_faces, piece.base.normal);
+    normals_named_ = std::max(normals_named_, make_absolute(chunk.normal_faces, piece.base.normal));
     make_room(mesh_.normal_faces, total_.face - mesh_.normal_faces.size(), pieces_left);
     mesh_.normal_faces.resize(piece.base.face, {-1, -1, -1});
     std::ranges::transform(chunk.normal_faces, std::back_inserter(mesh_.normal_faces),
@@ -215,85 +242,136 @@ void Assembly::append_faces(ObjChunk& chunk, Piece& piece, double pieces_left) {
     mesh_.normal_faces.resize(total_.face, {-1, -1, -1});
 }
 
-void Assembly::require_no_errors() const {
-    std::vector<Diagnostic> errors;
-    for (const Piece& piece : pieces_) {
-        for (const ObjRemark& remark : piece.errors) {
-            errors.push_back(diagnostic(Severity::error, remark, piece));
-            if (errors.size() < limits_.errors) continue;
-            errors.push_back(error_of_file(file_, "stopped after " + std::to_string(errors.size()) + " mistakes",
-                                           "--max-errors N shows more"));
-            throw InputError(std::move(errors));
-        }
-    }
-    if (!errors.empty()) throw InputError(std::move(errors));
-}
-
 void Assembly::require_counts() const {
-    const auto refuse = [&](std::string what, std::string advice) {
-        throw InputError(error_of_file(file_, std::move(what), std::move(advice)));
-    };
-    if (total_.face == 0) refuse("has no faces", "expected an OBJ file with lines such as: f 1 2 3");
-    if (std::max(total_.position, total_.normal) > most_indexed)
-        refuse("has too many vertices or normals", "at most " + std::to_string(most_indexed) + " can be counted");
+    if (std::max(total_.position, total_.normal) <= most_indexed) return;
+    throw InputError(error_of_file(file_, "has too many vertices or normals",
+                                   "at most " + std::to_string(most_indexed) + " can be counted"));
 }
 
-void Assembly::require_indices() const {
-    for (const Piece& piece : pieces_)
-        if (piece.positions_named > total_.position || piece.normals_named > total_.normal)
-            throw InputError(out_of_range(piece, find_bad_corner(piece)));
+void Assembly::require_faces() const {
+    if (total_.face > 0) return;
+    std::size_t left_out = 0;
+    for (const ObjFlaw flaw : {ObjFlaw::corner, ObjFlaw::few_corners, ObjFlaw::no_vertex, ObjFlaw::lost_vertex})
+        left_out += flaws_.count(flaw);
+    if (left_out > 0) throw InputError(error_of_file(file_, "has no face that can be read", "see the warnings"));
+    throw InputError(error_of_file(file_, "has no faces", "expected an OBJ file with lines such as: f 1 2 3"));
 }
 
-// The first of a piece that has one.
-Assembly::BadCorner Assembly::find_bad_corner(const Piece& piece) const {
-    ObjChunk chunk;
-    parse_obj_chunk(piece.text, limits_.triangles, limits_.errors, chunk);
-    for (std::size_t f = 0; f < chunk.faces.size(); ++f)
-        for (std::size_t c = 0; c < 3; ++c)
-            if (absolute(chunk.faces[f][c], piece.base.position) >= total_.position)
-                return {f, static_cast<int>(c), false};
-    for (std::size_t f = 0; f < chunk.normal_faces.size(); ++f)
-        for (std::size_t c = 0; c < 3; ++c)
-            if (chunk.normal_faces[f][c] != no_index &&
-                absolute(chunk.normal_faces[f][c], piece.base.normal) >= total_.normal)
-                return {f, static_cast<int>(c), true};
-    throw std::logic_error("no corner is out of range");
+// Grows with the indices, for vertices may follow their faces, but not beyond what a text of this size can hold.
+void Assembly::mark_named(const std::vector<std::array<std::uint32_t, 3>>& faces) {
+    const std::size_t most = text_.size() / 2;  // a line has two characters or more
+    if (named_.size() < std::min<std::size_t>(positions_named_, most))
+        named_.resize(std::min(std::max<std::size_t>(positions_named_, 2 * named_.size()), most));
+    for (const auto& face : faces)
+        for (const std::uint32_t vertex : face)
+            if (vertex < named_.size()) named_[vertex] = 1;
 }
 
-Diagnostic Assembly::out_of_range(const Piece& piece, const BadCorner& bad) const {
-    ObjRemark remark = locate_obj_corner(piece.text, bad.face, bad.corner, bad.normal);
-    const std::size_t count = bad.normal ? total_.normal : total_.position;
-    const char* start = remark.source_line.data() + remark.column - 1;
-    const std::string_view word(start, std::min(remark.length, std::string_view(start, remark.length).find('/')));
-    const std::string_view list = bad.normal ? "normals" : "vertices";
-    remark.what = "there is no " + std::string(bad.normal ? "normal " : "vertex ") + std::string(word);
-    remark.expected = word.starts_with('-') ? "not so many " + std::string(list) + " stand above this line"
-                                            : "the file has " + std::to_string(count) + " " + std::string(list);
-    remark.length = word.size();
-    return diagnostic(Severity::error, remark, piece);
+Box Assembly::box_of_named() const {
+    if (unnamed_ == 0) return box_;
+    Box box;
+    for (std::size_t v = 0; v < named_.size(); ++v)
+        if (named_[v] != 0) box.grow(mesh_.positions[v]);
+    return box;
 }
 
-void Assembly::drop_empty_normals(std::vector<Diagnostic>& warnings) {
-    if (empty_normals_ == 0) return;
+bool Assembly::names_what_is_not_there() const {
+    return positions_named_ > total_.position || normals_named_ > total_.normal ||
+           std::ranges::any_of(lost_vertices_, [&](std::uint32_t vertex) { return named_[vertex] != 0; });
+}
+
+// The one that they have, where that is good enough: it may have been a guess.
+glm::dvec3 Assembly::better_origin() const {
+    const Box box = box_of_named();
+    if (!(box.lower.x <= box.upper.x)) return origin_;
+    const glm::dvec3 lower(box.lower), upper(box.upper);
+    const glm::dvec3 wanted = origin_for(lower + origin_, upper + origin_);
+    const bool wanted_far = wanted != glm::dvec3(0), is_far = origin_ != glm::dvec3(0);
+    const bool good = origin_for(lower, upper) == glm::dvec3(0);
+    return wanted_far && is_far && good ? origin_ : wanted;
+}
+
+// Corners that name a normal of length 0, or one that cannot be read, have none.
+void Assembly::drop_useless_normals() {
+    if (flaws_.count(ObjFlaw::empty_normal) + flaws_.count(ObjFlaw::normal) == 0) return;
     for (auto& corners : mesh_.normal_faces)
         for (std::int32_t& corner : corners)
             if (corner >= 0 && mesh_.normals[static_cast<std::size_t>(corner)] == glm::vec3(0)) corner = -1;
+}
+
+// Vertices that no face names are no part of what is seen, wherever they are.
+void Assembly::drop_unnamed_vertices() {
+    if (unnamed_ == 0) return;
+    std::vector<std::uint32_t> places(mesh_.positions.size());
+    std::uint32_t kept = 0;
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        if (named_[v] == 0) continue;
+        mesh_.positions[kept] = mesh_.positions[v];
+        places[v] = kept++;
+    }
+    mesh_.positions.resize(kept);
+    for (auto& face : mesh_.faces)
+        for (std::uint32_t& vertex : face) vertex = places[vertex];
+}
+
+void Assembly::cut_polygons(std::vector<Diagnostic>& warnings) {
+    const std::size_t not_cut = cut_concave_polygons(mesh_, polygons_);
+    if (not_cut == 0) return;
     warnings.push_back(warning_at(
         {file_},
-        std::to_string(empty_normals_) + (empty_normals_ == 1 ? " normal has" : " normals have") + " no length",
-        "the corners that name such a normal get one from the faces around them"));
+        std::to_string(not_cut) + (not_cut == 1 ? " concave polygon is" : " concave polygons are") + " shown as a fan",
+        "cutting polygons of so many corners into triangles takes too long"));
+}
+
+// Once more from the start, with what is known by now.
+void Assembly::read() {
+    ++readings_;
+    faces_ = 0;
+    next_ = 0;
+    mesh_ = {};
+    polygons_.clear();
+    lost_vertices_.clear();
+    flaws_.clear();
+    total_ = {};
+    box_ = {};
+    positions_named_ = normals_named_ = 0;
+    named_.clear();
+    parse_pieces();
+    require_counts();
+    named_.resize(total_.position);
+    unnamed_ = static_cast<std::size_t>(std::ranges::count(named_, 0));
 }
 
 TriangleMesh Assembly::run(std::vector<Diagnostic>& warnings) {
-    parse_pieces();
-    const auto unknown = std::ranges::find_if(pieces_, [](const Piece& p) { return !p.unknown_words.empty(); });
-    if (unknown != pieces_.end())
-        warnings.push_back(diagnostic(Severity::warning, unknown->unknown_words[0], *unknown));
-    require_no_errors();
-    require_counts();
-    require_indices();
-    drop_empty_normals(warnings);
+    read();
+    // At most twice more: what is not there is left out, and then the origin may be another.
+    while (readings_ < 3) {
+        const glm::dvec3 origin = better_origin();
+        const bool needs_census = !census_ && names_what_is_not_there();
+        if (!needs_census && origin == origin_) break;
+        if (needs_census) census_ = ObjCensus{total_.position, total_.normal, std::move(lost_vertices_)};
+        origin_ = origin;
+        read();
+    }
+    const std::vector<Diagnostic> flaws = flaws_.warnings(file_, total_.position, total_.normal);
+    warnings.insert(warnings.end(), flaws.begin(), flaws.end());
+    require_faces();
+    cut_polygons(warnings);
+    drop_useless_normals();
+    drop_unnamed_vertices();
+    mesh_.origin = origin_;
     return std::move(mesh_);
+}
+
+void require_single_bytes(std::string_view text, const std::filesystem::path& file) {
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+        throw InputError(error_of_file(file.string(), "is UTF-16 text", "save it as UTF-8 or ASCII text"));
+}
+
+TriangleMesh mesh_of(FileBytes& bytes, const std::filesystem::path& file, const Limits& limits,
+                     std::vector<Diagnostic>& warnings) {
+    require_single_bytes(bytes.text(), file);
+    return Assembly(bytes, file, limits).run(warnings);
 }
 
 }  // namespace
@@ -302,14 +380,14 @@ TriangleMesh parse_obj(std::string_view text, const std::filesystem::path& file,
                        std::vector<Diagnostic>& warnings) {
     FileBytes padded(text.size());
     std::ranges::copy(text, padded.data());
-    return Assembly(padded.text(), file, limits).run(warnings);
+    return mesh_of(padded, file, limits, warnings);
 }
 
 TriangleMesh read_obj(const std::filesystem::path& file, const Limits& limits, std::vector<Diagnostic>& warnings,
                       const SourceLocation& where) {
     try {
-        const FileBytes bytes = read_text_bytes(file, limits.mesh_bytes);
-        return Assembly(bytes.text(), file, limits).run(warnings);
+        FileBytes bytes = read_text_bytes(file, limits.mesh_bytes);
+        return mesh_of(bytes, file, limits, warnings);
     } catch (const FileProblem& problem) {
         const SourceLocation place = where.file.empty() ? SourceLocation{file.string()} : where;
         const std::string what =

@@ -14,10 +14,11 @@
 
 namespace raywalk {
 
-// Throws InputError (with file:line:column) on a malformed file, on indices out of range, on numbers that are not
-// finite, on a file without faces and on a broken budget; `where` is the place that named a file which cannot be read.
-// Polygons become fans from their first vertex. Corners that name a normal of length 0 have none (-1), with a warning.
-// Parsed in pieces by all threads; the result is the same for any number of them.
+// What is wrong with a detail costs that detail (a face that names a vertex which is not there is left out, a normal
+// that cannot be read is taken from the faces) and is warned of once for each kind, with the first place. Throws
+// InputError where no picture is left: no faces, or a broken budget; `where` is the place that named a file which
+// cannot be read. Convex polygons become fans from their first corner. Vertices that no face names are left out. Parsed
+// in pieces by all threads; the result is the same for any number of them.
 TriangleMesh read_obj(const std::filesystem::path& file, const Limits& limits, std::vector<Diagnostic>& warnings,
                       const SourceLocation& where = {});
 TriangleMesh parse_obj(std::string_view text, const std::filesystem::path& file, const Limits& limits,
