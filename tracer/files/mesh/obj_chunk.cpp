@@ -47,7 +47,7 @@ class ChunkParser : ObjCursor {
     template <class Real>
     bool parse_number(Real& value, const char* name, ObjFlaw flaw);
     static const char* read_plain_corner(const char* p, Corner& corner);
-    bool parse_plain_triangle();
+    bool parse_plain_face();
     bool parse_corner(Corner& corner);
     void parse_corner_details(std::string_view word, std::string_view details, Corner& corner);
     bool resolve(const WrittenIndex& index, std::size_t count, std::uint32_t& into) const;
@@ -269,22 +269,26 @@ bool ChunkParser::is_there(const char* word, Corner& corner) {
     return true;
 }
 
-// Reads what most lines of most files are: three such corners with a blank before each and nothing behind.
-inline bool ChunkParser::parse_plain_triangle() {
-    Corner corners[3];
+// Reads what most lines of most files are: three such corners, or four, with a blank before each and nothing behind.
+inline bool ChunkParser::parse_plain_face() {
+    Corner corners[4];
     const char* p = p_ + 1;
-    for (Corner& corner : corners) {
-        if (*p != ' ' || (p = read_plain_corner(p + 1, corner)) == nullptr) return false;
-    }
+    for (int i = 0; i < 3; ++i)
+        if (*p != ' ' || (p = read_plain_corner(p + 1, corners[i])) == nullptr) return false;
+    const bool quad = *p == ' ' && p[1] > ' ';
+    if (quad && (p = read_plain_corner(p + 1, corners[3])) == nullptr) return false;
+    if (*p == '\r') ++p;
     if (*p != '\n') return false;
+    if (quad) out_.polygons.add(out_.faces.size(), 4);
     add_face(corners[0], corners[1], corners[2]);
+    if (quad) add_face(corners[0], corners[2], corners[3]);
     p_ = p;
     return true;
 }
 
 // A polygon, as a fan from its first corner.
 void ChunkParser::parse_face() {
-    if (reading_.census == nullptr && parse_plain_triangle()) return;
+    if (reading_.census == nullptr && parse_plain_face()) return;
     const char* keyword = p_;
     const char* first_line = line_start_;
     const std::size_t faces_before = out_.faces.size();

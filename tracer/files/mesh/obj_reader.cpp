@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <exception>
 #include <glm/common.hpp>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -57,19 +56,6 @@ std::vector<Piece> cut(std::string_view text) {
     return pieces;
 }
 
-// Makes all indices absolute. Returns one more than the largest.
-std::uint64_t make_absolute(std::vector<std::array<std::uint32_t, 3>>& faces, std::size_t start) {
-    std::uint64_t end = 0;
-    for (auto& face : faces) {
-        for (std::uint32_t& index : face) {
-            if (index == no_index) continue;
-            index = absolute_index(index, start);
-            end = std::max(end, std::uint64_t{index} + 1);
-        }
-    }
-    return end;
-}
-
 // Makes room for `more` elements; if there is none, then for all that the rest of the text will bring, were it as full
 // of them as the piece that brings these: lists that grow step by step are copied, and their memory touched, anew.
 template <class T>
@@ -113,7 +99,7 @@ class Assembly {
     void append_faces(ObjChunk& chunk, const Piece& piece, double pieces_left);
     void require_counts() const;
     void require_faces() const;
-    void mark_named(const std::vector<std::array<std::uint32_t, 3>>& faces);
+    void mark_named(std::span<const std::array<std::uint32_t, 3>> faces);
     [[nodiscard]] Box box_of_named() const;
     [[nodiscard]] bool names_what_is_not_there() const;
     [[nodiscard]] glm::dvec3 better_origin() const;
@@ -143,11 +129,12 @@ class Assembly {
     std::vector<std::uint32_t> lost_vertices_;
     ObjFlaws flaws_;
     Base total_;
-    Box box_;  // of all vertices
-    // One more than the largest indices of the corners.
-    std::uint64_t positions_named_ = 0, normals_named_ = 0;
+    Box box_;                          // of all vertices
     std::vector<std::uint8_t> named_;  // by vertex: does a face name it?
-    std::size_t unnamed_ = 0;          // when all is read
+    std::uint64_t normals_named_ = 0;  // one more than the largest index
+    // When all is read: vertices that no face names; whether one names a vertex that is not there.
+    std::size_t unnamed_ = 0;
+    bool names_missing_ = false;
 };
 
 // Each thread parses a piece into a chunk that stays in its cache. The chunks go into the mesh one after the other, in
@@ -226,20 +213,45 @@ void Assembly::append(Piece& piece, ObjChunk& chunk) {
 }
 
 void Assembly::append_faces(ObjChunk& chunk, const Piece& piece, double pieces_left) {
-    positions_named_ = std::max(positions_named_, make_absolute(chunk.faces, piece.base.position));
+    for (auto& face : chunk.faces)
+        for (std::uint32_t& vertex : face) vertex = absolute_index(vertex, piece.base.position);
     mark_named(chunk.faces);
     make_room(mesh_.faces, chunk.faces.size(), pieces_left);
     mesh_.faces.insert(mesh_.faces.end(), chunk.faces.begin(), chunk.faces.end());
     if (chunk.normal_faces.empty() && mesh_.normal_faces.empty()) return;
 
-    using Corners = std::array<std::int32_t, 3>;
-    static_assert(static_cast<std::int32_t>(no_index) == -1);
-    normals_named_ = std::max(normals_named_, make_absolute(chunk.normal_faces, piece.base.normal));
     make_room(mesh_.normal_faces, total_.face - mesh_.normal_faces.size(), pieces_left);
     mesh_.normal_faces.resize(piece.base.face, {-1, -1, -1});
-    std::ranges::transform(chunk.normal_faces, std::back_inserter(mesh_.normal_faces),
-                           [](const auto& corners) { return std::bit_cast<Corners>(corners); });
+    static_assert(static_cast<std::int32_t>(no_index) == -1);
+    for (const auto& face : chunk.normal_faces) {
+        auto& corners = mesh_.normal_faces.emplace_back();
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (face[c] != no_index) {
+                const std::uint32_t normal = absolute_index(face[c], piece.base.normal);
+                normals_named_ = std::max(normals_named_, std::uint64_t{normal} + 1);
+                corners[c] = static_cast<std::int32_t>(normal);
+            } else {
+                corners[c] = -1;
+            }
+        }
+    }
     mesh_.normal_faces.resize(total_.face, {-1, -1, -1});
+}
+
+// Vertices may follow their faces, but there are no more than a text of this size can hold.
+void Assembly::mark_named(std::span<const std::array<std::uint32_t, 3>> faces) {
+    const std::size_t most = text_.size() / 2;  // a line has two characters or more
+    std::span<std::uint8_t> named(named_);      // not known to change with each mark that is set
+    for (const auto& face : faces) {
+        const std::size_t last = std::ranges::max(face);
+        if (last >= named.size()) {
+            if (last < most) named_.resize(std::min(std::max(last + 1, 2 * named_.size()), most));
+            names_missing_ = names_missing_ || last >= most;
+            named = named_;
+        }
+        for (const std::uint32_t vertex : face)
+            if (vertex < named.size()) named[vertex] = 1;
+    }
 }
 
 void Assembly::require_counts() const {
@@ -257,16 +269,6 @@ void Assembly::require_faces() const {
     throw InputError(error_of_file(file_, "has no faces", "expected an OBJ file with lines such as: f 1 2 3"));
 }
 
-// Grows with the indices, for vertices may follow their faces, but not beyond what a text of this size can hold.
-void Assembly::mark_named(const std::vector<std::array<std::uint32_t, 3>>& faces) {
-    const std::size_t most = text_.size() / 2;  // a line has two characters or more
-    if (named_.size() < std::min<std::size_t>(positions_named_, most))
-        named_.resize(std::min(std::max<std::size_t>(positions_named_, 2 * named_.size()), most));
-    for (const auto& face : faces)
-        for (const std::uint32_t vertex : face)
-            if (vertex < named_.size()) named_[vertex] = 1;
-}
-
 Box Assembly::box_of_named() const {
     if (unnamed_ == 0) return box_;
     Box box;
@@ -276,7 +278,7 @@ Box Assembly::box_of_named() const {
 }
 
 bool Assembly::names_what_is_not_there() const {
-    return positions_named_ > total_.position || normals_named_ > total_.normal ||
+    return names_missing_ || normals_named_ > total_.normal ||
            std::ranges::any_of(lost_vertices_, [&](std::uint32_t vertex) { return named_[vertex] != 0; });
 }
 
@@ -334,10 +336,14 @@ void Assembly::read() {
     flaws_.clear();
     total_ = {};
     box_ = {};
-    positions_named_ = normals_named_ = 0;
+    normals_named_ = 0;
     named_.clear();
+    names_missing_ = false;
     parse_pieces();
     require_counts();
+    if (named_.size() > total_.position)
+        names_missing_ |=
+            std::find(named_.begin() + static_cast<std::ptrdiff_t>(total_.position), named_.end(), 1) != named_.end();
     named_.resize(total_.position);
     unnamed_ = static_cast<std::size_t>(std::ranges::count(named_, 0));
 }

@@ -11,8 +11,8 @@ namespace raywalk {
 
 namespace {
 
-// Runs of fewer polygons are looked at by one thread: waking the others takes longer.
-constexpr std::size_t worth_threads = 4096;
+// Runs of fewer polygons are looked at by one thread: waking the others takes longer, and there may be many runs.
+constexpr std::size_t worth_threads = 65'536;
 
 glm::dvec3 twice_area_vector(const TriangleMesh& mesh, std::size_t face) {
     const auto& [a, b, c] = mesh.faces[face];
@@ -78,8 +78,7 @@ std::uint64_t steps_for(const TriangleMesh& mesh) { return 1'000'000'000 + 1000 
 }  // namespace
 
 void PolygonRuns::append(const PolygonRuns& of_chunk, std::size_t faces_before) {
-    for (const PolygonRun& run : of_chunk.runs_)
-        runs_.push_back({run.first_face + faces_before, run.count, run.corners});
+    for (const PolygonRun& run : of_chunk.runs_) add({run.first_face + faces_before, run.count, run.corners});
 }
 
 std::size_t cut_concave_polygons(TriangleMesh& mesh, const PolygonRuns& polygons) {

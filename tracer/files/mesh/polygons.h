@@ -18,22 +18,24 @@ struct PolygonRun {
 // Runs by ascending faces.
 class PolygonRuns {
   public:
-    void add(std::size_t first_face, std::uint32_t corners) {
-        if (!runs_.empty()) {
-            PolygonRun& last = runs_.back();
-            if (last.corners == corners && last.first_face + last.count * (corners - 2) == first_face) {
-                ++last.count;
-                return;
-            }
-        }
-        runs_.push_back({first_face, 1, corners});
-    }
+    void add(std::size_t first_face, std::uint32_t corners) { add({first_face, 1, corners}); }
     // Those of a chunk that follows `faces_before` faces.
     void append(const PolygonRuns& of_chunk, std::size_t faces_before);
     void clear() { runs_.clear(); }
     [[nodiscard]] const std::vector<PolygonRun>& runs() const { return runs_; }
 
   private:
+    void add(const PolygonRun& run) {
+        if (!runs_.empty()) {
+            PolygonRun& last = runs_.back();
+            if (last.corners == run.corners && last.first_face + last.count * (last.corners - 2) == run.first_face) {
+                last.count += run.count;
+                return;
+            }
+        }
+        runs_.push_back(run);
+    }
+
     std::vector<PolygonRun> runs_;
 };
 
