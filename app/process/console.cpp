@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <system_error>
 
 #include "tracer/ground/file_bytes.h"
 
@@ -129,7 +128,7 @@ void print_diagnostics(std::span<const Diagnostic> diagnostics) {
 
 void print_result(std::string_view text) {
     if (const int error = write_all(STDOUT_FILENO, text); error != 0)
-        throw WorkError("cannot write to standard output: " + std::generic_category().message(error));
+        fail_with("cannot write to standard output", error);
 }
 
 std::string duration_text(double seconds) {

@@ -96,7 +96,7 @@ fault "a picture that was not encoded replaces the old one" tracer/files/image/w
 fault "a missing encoder is noticed when the picture is done" tracer/files/image/write.cpp \
     'extension && extension->format ? obstacle_to_encoding(*extension->format) : std::string()' 'std::string()' \
     command_line_tests 'CommandLine.AMissingEncoderIsNoticedBeforeTheWork'
-fault "nobody is told that a picture is being saved" app/interrupts.cpp \
+fault "nobody is told that a picture is being saved" app/process/interrupts.cpp \
     'if (flag) say' 'if (false) say' \
     command_line_tests 'CommandLine.AnInterruptSavesWhatThereIsAndEndsWith130'
 

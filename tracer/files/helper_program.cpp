@@ -34,10 +34,6 @@ constexpr rlim_t small_stack = 1 << 20;
 constexpr std::array environment = {"LC_ALL=C", "OPENIMAGEIO_THREADS=1", "OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1",
                                     "MALLOC_ARENA_MAX=1"};
 
-[[noreturn]] void fail(const std::string& step, int error) {
-    throw WorkError(step + ": " + std::generic_category().message(error));
-}
-
 class Descriptor {
   public:
     explicit Descriptor(int fd) : fd_(fd) {}
@@ -146,7 +142,7 @@ int open_helper(const std::string& name) {
         if (program.get() < 0) continue;
         for (const int fd : {inside.get(), program.get()}) {
             struct stat status {};
-            if (fstat(fd, &status) != 0) fail("'" + (folder / name).string() + "' cannot be run", errno);
+            if (fstat(fd, &status) != 0) fail_with("'" + (folder / name).string() + "' cannot be run", errno);
             if (const std::string reason = distrust(status.st_uid, status.st_gid, status.st_mode, home.owner);
                 !reason.empty())
                 throw WorkError("'" + (fd == program.get() ? folder / name : folder).string() +
@@ -173,7 +169,7 @@ RunningHelper::RunningHelper(const std::string& name, std::vector<std::string> a
     if (pid == 0) become_helper(start);
     const int error = errno;
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    if (pid < 0) fail("the program " + name + " cannot be run", error);
+    if (pid < 0) fail_with("the program " + name + " cannot be run", error);
     pid_ = pid;
 }
 

@@ -1,6 +1,7 @@
 #include "tracer/ground/error.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include "tracer/ground/character_width.h"
 #include "tracer/ground/utf8.h"
@@ -141,5 +142,9 @@ InputError::InputError(std::vector<Diagnostic> diagnostics)
     : std::runtime_error(joined(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
 InputError::InputError(Diagnostic diagnostic) : InputError(std::vector{std::move(diagnostic)}) {}
+
+void fail_with(const std::string& step, int error) {
+    throw WorkError(step + ": " + std::generic_category().message(error));
+}
 
 }  // namespace raywalk

@@ -72,4 +72,7 @@ class WorkError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// A step that the system refused, by its errno: "STEP: No such file or directory".
+[[noreturn]] void fail_with(const std::string& step, int error);
+
 }  // namespace raywalk

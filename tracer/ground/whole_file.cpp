@@ -139,9 +139,7 @@ WholeFile::~WholeFile() {
     if (!part_.empty()) unlink(part_.c_str());
 }
 
-void WholeFile::fail(int error) const {
-    throw WorkError("cannot write " + quoted_name(file_.string()) + ": " + std::generic_category().message(error));
-}
+void WholeFile::fail(int error) const { fail_with("cannot write " + quoted_name(file_.string()), error); }
 
 void WholeFile::append(std::string_view bytes) {
     const int error =

@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "tracer/files/helper_program.h"
@@ -22,15 +21,11 @@ namespace raywalk {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& step, int error) {
-    throw WorkError(step + ": " + std::generic_category().message(error));
-}
-
 // A file in memory, for what goes to the helper and comes back.
 class MemoryFile {
   public:
     explicit MemoryFile(const char* name) : fd_(memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
-        if (fd_ < 0) fail("no memory for an image", errno);
+        if (fd_ < 0) fail_with("no memory for an image", errno);
     }
     MemoryFile(const MemoryFile&) = delete;
     MemoryFile& operator=(const MemoryFile&) = delete;
@@ -41,7 +36,7 @@ class MemoryFile {
         while (!bytes.empty()) {
             const ssize_t count = write(fd_, bytes.data(), bytes.size());
             if (count < 0 && errno == EINTR) continue;
-            if (count < 0) fail("no memory for an image", errno);
+            if (count < 0) fail_with("no memory for an image", errno);
             bytes.remove_prefix(static_cast<std::size_t>(count));
         }
         lseek(fd_, 0, SEEK_SET);
@@ -50,13 +45,13 @@ class MemoryFile {
     void seal() const { fcntl(fd_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL); }
     [[nodiscard]] FileBytes content() const {
         struct stat status {};
-        if (fstat(fd_, &status) != 0) fail("an image's decoder left nothing", errno);
+        if (fstat(fd_, &status) != 0) fail_with("an image's decoder left nothing", errno);
         FileBytes bytes(static_cast<std::size_t>(status.st_size));
         std::size_t done = 0;
         while (done < bytes.text().size()) {
             const ssize_t count = pread(fd_, bytes.data() + done, bytes.text().size() - done, static_cast<off_t>(done));
             if (count < 0 && errno == EINTR) continue;
-            if (count <= 0) fail("an image cannot be taken from its decoder", count < 0 ? errno : EIO);
+            if (count <= 0) fail_with("an image cannot be taken from its decoder", count < 0 ? errno : EIO);
             done += static_cast<std::size_t>(count);
         }
         return bytes;
@@ -72,7 +67,7 @@ class Channel {
   public:
     Channel() {
         if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends_.data()) != 0)
-            fail("no way to an image's encoder", errno);
+            fail_with("no way to an image's encoder", errno);
     }
     Channel(const Channel&) = delete;
     Channel& operator=(const Channel&) = delete;
