@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <vector>
 
 #include "tests/files/mesh/obj_text.h"
 
@@ -28,8 +30,10 @@ void expect_quad(const TriangleMesh& mesh, const std::string& text) {
 
 TEST(ObjFlaws, AByteOrderMarkLosesNoVertex) {
     const std::string mark = "\xEF\xBB\xBF", text(quad);
-    for (const std::string& marked : {mark + text, mark + mark + text, "# a\n" + mark + text, mark + " \t" + text,
-                                      text.substr(0, 8) + mark + text.substr(8), text + mark, text + mark + "\n"}) {
+    for (const auto& [before, place, after] : std::vector<std::tuple<std::string, std::size_t, std::string>>{
+             {"", 0, ""}, {mark, 0, ""}, {"# a\n", 0, ""}, {"", 0, " \t"}, {"", 8, ""}, {"", text.size(), ""}}) {
+        std::string marked = text;
+        marked.insert(place, mark + after).insert(0, before);
         const ReadMesh read(marked);
         expect_quad(read.mesh, marked);
         EXPECT_EQ(read.text, "");

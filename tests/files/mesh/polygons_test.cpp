@@ -59,7 +59,7 @@ void expect_filled_however_written(Ring ring) {
     for (int reversed = 0; reversed < 2; ++reversed, std::ranges::reverse(ring))
         for (std::size_t first = 0; first < ring.size(); ++first) {
             expect_filled(ring, static_cast<int>(first % 3));
-            std::ranges::rotate(ring, ring.begin() + 1);
+            std::rotate(ring.begin(), ring.begin() + 1, ring.end());
         }
 }
 
@@ -152,7 +152,7 @@ TEST(Polygons, MazesAreFilled) {
     for (unsigned seed = 0; seed < 300; ++seed) {
         Ring walls = Maze(seed, 2 + static_cast<int>(seed % 9)).walls();
         if (seed % 2 != 0) std::ranges::reverse(walls);
-        std::ranges::rotate(walls, walls.begin() + static_cast<std::ptrdiff_t>(seed % walls.size()));
+        std::rotate(walls.begin(), walls.begin() + static_cast<std::ptrdiff_t>(seed % walls.size()), walls.end());
         expect_filled(walls, static_cast<int>(seed % 3));
     }
     expect_filled(Maze(1, 40).walls());
