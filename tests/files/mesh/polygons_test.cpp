@@ -119,7 +119,8 @@ TEST(Polygons, ThoseThatTouchThemselvesAreFilled) {
 // The way around all walls of a maze of unit cells: each wall between two cells is walked along on both of its sides.
 class Maze {
   public:
-    Maze(unsigned seed, int size) : random_(seed), size_(size), seen_(static_cast<std::size_t>(size * size)) {
+    Maze(unsigned seed, int size)
+        : random_(seed), size_(size), seen_(static_cast<std::size_t>(size) * static_cast<std::size_t>(size)) {
         visit({0, 0}, 3, 4);
     }
     [[nodiscard]] const Ring& walls() const { return walls_; }
@@ -129,13 +130,16 @@ class Maze {
     static constexpr glm::ivec2 towards[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
     static constexpr glm::ivec2 starts[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
+    [[nodiscard]] std::size_t index(glm::ivec2 cell) const {
+        return static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(cell.x);
+    }
     void visit(glm::ivec2 cell, int entered, int sides) {
-        seen_[static_cast<std::size_t>(cell.y * size_ + cell.x)] = true;
+        seen_[index(cell)] = true;
         for (int i = 1; i <= sides; ++i) {
             const int side = (entered + i) % 4;
             const glm::ivec2 next = cell + towards[side];
             const bool inside = std::min(next.x, next.y) >= 0 && std::max(next.x, next.y) < size_;
-            if (inside && !seen_[static_cast<std::size_t>(next.y * size_ + next.x)] && random_() % 4 != 0)
+            if (inside && !seen_[index(next)] && random_() % 4 != 0)
                 visit(next, (side + 2) % 4, 3);
             else
                 walls_.emplace_back(cell + starts[side]);
