@@ -78,7 +78,7 @@ auto one_of(std::vector<std::pair<std::string_view, Meaning>> meanings) {
         }
         std::string message =
             std::string(option) + ": expected one of " + listed(words) + ", not " + raywalk::quoted(value);
-        if (const auto near = nearest_word(value, words)) message += ": did you mean '" + std::string(*near) + "'?";
+        if (const std::string meant = did_you_mean(value, words); !meant.empty()) message += ": " + meant;
         throw UsageError(message);
     };
 }
@@ -265,9 +265,8 @@ void CommandLine::unknown_option(std::string_view name) const {
     std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
     const std::vector<std::string_view> known(names.begin(), names.end());
-    const auto near = nearest_word(name, known);
-    throw UsageError("unknown option " + raywalk::quoted(name) +
-                     (near ? ": did you mean '" + std::string(*near) + "'?" : ""));
+    const std::string meant = did_you_mean(name, known);
+    throw UsageError("unknown option " + raywalk::quoted(name) + (meant.empty() ? "" : ": " + meant));
 }
 
 // What CLI11 would take for something else: the report's -render and -travel, and the values of --quiet=no and --size=.

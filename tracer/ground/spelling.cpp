@@ -50,9 +50,14 @@ std::string listed(std::span<const std::string_view> words) {
     return text;
 }
 
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> known) {
+    const auto near = nearest_word(word, known);
+    return near ? "did you mean '" + std::string(*near) + "'?" : "";
+}
+
 std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
-    if (const auto near = nearest_word(word, known)) return "did you mean '" + std::string(*near) + "'?";
-    return "expected one of " + listed(known);
+    const std::string meant = did_you_mean(word, known);
+    return meant.empty() ? "expected one of " + listed(known) : meant;
 }
 
 }  // namespace raywalk

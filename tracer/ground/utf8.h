@@ -6,6 +6,9 @@
 
 namespace raywalk {
 
+// What some programs put before a text to say that it is UTF-8.
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
 // Bytes of the character that `text` starts with, 0 where it is not UTF-8. `text` is not empty.
 constexpr std::size_t utf8_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };

@@ -12,6 +12,7 @@
 #include "tracer/files/mesh/obj_cursor.h"
 #include "tracer/files/mesh/obj_words.h"
 #include "tracer/ground/error.h"
+#include "tracer/ground/utf8.h"
 
 namespace raywalk {
 

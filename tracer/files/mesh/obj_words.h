@@ -9,8 +9,6 @@
 
 namespace raywalk {
 
-inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
 // Statements that say nothing about triangles: of numbers, whose lines may be continued, and of names. A backslash at
 // the end of a name (of a folder, say) is part of it.
 bool is_number_statement(std::string_view word);

@@ -37,7 +37,6 @@ void split(SceneLine& line) {
 SceneLexer::SceneLexer(std::string_view text) : rest_(text) {}
 
 bool SceneLexer::next(SceneLine& line) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     while (!rest_.empty()) {
         const std::size_t end = std::min(rest_.find('\n'), rest_.size());
         line.text = rest_.substr(0, end);
