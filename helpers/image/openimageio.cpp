@@ -165,9 +165,10 @@ void use_one_thread() {
 std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const ImageRefusal& refusal, Image& image) {
     try {
         const char* plugin = plugin_name(format);
+        // Before the input, which still asks it while it ends.
+        OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());  // it only reads
         const auto input = plugin ? OIIO::ImageInput::create(plugin) : nullptr;
         if (!input) return "OpenImageIO cannot read its format";
-        OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());  // it only reads
         OIIO::ImageSpec wishes, spec;
         OIIO::Filesystem::IOProxy* proxy = &memory;
         wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
@@ -202,12 +203,12 @@ std::string decode_pixels(ImageFormat format, std::span<const char> bytes, const
 std::string encode_picture(const ImageEncoding& picture, const NextRows& next, EncodedFile& file) {
     try {
         const char* plugin = plugin_name(picture.format);
+        EncodedProxy proxy(file);  // before the output, which still writes to it while it ends after a failure
         const auto output = plugin ? OIIO::ImageOutput::create(plugin) : nullptr;
         if (!output || !output->supports("ioproxy")) return "OpenImageIO cannot write its format";
         const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
         OIIO::attribute("threads", processors);
         OIIO::attribute("exr_threads", processors);
-        EncodedProxy proxy(file);
         return write_pixels(*output, spec_of(picture, proxy), picture, next, processors);
     } catch (const std::bad_alloc&) {
         throw;
