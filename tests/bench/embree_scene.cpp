@@ -69,14 +69,14 @@ void prepare(const RayBlocks& rays, RTCRayNt<width>& packet) {
 
 // Lanes [lane, lane + width) of a block; returns whether any is to be traced.
 template <int width>
-bool fill(const ScatteredRays& block, bool common_origin, std::size_t lane, RTCRayNt<width>& packet, int* valid) {
+bool fill(const RayPacket& block, bool common_origin, std::size_t lane, RTCRayNt<width>& packet, int* valid) {
     int any = 0;
     for (std::size_t i = 0; i < width; ++i) {
         valid[i] = block.t_max[lane + i] > block.t_min[lane + i] ? -1 : 0;
         any |= valid[i];
     }
     if (any == 0) return false;
-    const auto copy = [lane](const float(&from)[beam_rays], float* to) {
+    const auto copy = [lane](const float(&from)[packet_size], float* to) {
         std::memcpy(to, from + lane, width * sizeof(float));
     };
     if (!common_origin) {
@@ -112,15 +112,15 @@ void intersect_packets(RTCScene scene, std::int32_t triangle_count, EmbreeCall c
     alignas(64) int valid[width];
     prepare<width>(rays, packet.ray);
     for (std::size_t first = 0; first < rays.size(); first += width) {
-        const std::size_t lane = first % beam_rays;
-        if (lane == 0) fetch_ahead(rays, hits, first / beam_rays);
-        if (!fill<width>(rays.blocks()[first / beam_rays], call.common_origin, lane, packet.ray, valid)) continue;
+        const std::size_t lane = first % packet_size;
+        if (lane == 0) fetch_ahead(rays, hits, first / packet_size);
+        if (!fill<width>(rays.blocks()[first / packet_size], call.common_origin, lane, packet.ray, valid)) continue;
         for (int i = 0; i < width; ++i) packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         if constexpr (width == 8)
             rtcIntersect8(valid, scene, &context, reinterpret_cast<RTCRayHit8*>(&packet));
         else
             rtcIntersect16(valid, scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
-        BeamHits& found = hits.blocks()[first / beam_rays];
+        HitPacket& found = hits.blocks()[first / packet_size];
         std::memcpy(found.t + lane, packet.ray.tfar, sizeof packet.ray.tfar);
         std::memcpy(found.u + lane, packet.hit.u, sizeof packet.hit.u);
         std::memcpy(found.v + lane, packet.hit.v, sizeof packet.hit.v);
@@ -136,14 +136,14 @@ void occlude_packets(RTCScene scene, EmbreeCall call, const RayBlocks& rays, Hit
     alignas(64) int valid[width];
     prepare<width>(rays, packet);
     for (std::size_t first = 0; first < rays.size(); first += width) {
-        const std::size_t lane = first % beam_rays;
-        if (lane == 0) fetch_ahead(rays, hits, first / beam_rays);
-        if (!fill<width>(rays.blocks()[first / beam_rays], call.common_origin, lane, packet, valid)) continue;
+        const std::size_t lane = first % packet_size;
+        if (lane == 0) fetch_ahead(rays, hits, first / packet_size);
+        if (!fill<width>(rays.blocks()[first / packet_size], call.common_origin, lane, packet, valid)) continue;
         if constexpr (width == 8)
             rtcOccluded8(valid, scene, &context, reinterpret_cast<RTCRay8*>(&packet));
         else
             rtcOccluded16(valid, scene, &context, reinterpret_cast<RTCRay16*>(&packet));
-        BeamHits& found = hits.blocks()[first / beam_rays];
+        HitPacket& found = hits.blocks()[first / packet_size];
         for (std::size_t i = 0; i < width; ++i) found.id[lane + i] = packet.tfar[i] < 0 ? 0 : -1;
     }
 }
@@ -218,7 +218,7 @@ void intersect(RTCScene scene, std::int32_t triangle_count, EmbreeCall call, con
     if (call.width == 16) return intersect_packets<16>(scene, triangle_count, call, rays, hits);
     RTCIntersectContext context = context_of(call);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (i % beam_rays == 0) fetch_ahead(rays, hits, i / beam_rays);
+        if (i % packet_size == 0) fetch_ahead(rays, hits, i / packet_size);
         if (!(rays.t_max(i) > rays.t_min(i))) continue;
         RTCRayHit one;
         one.ray = single_ray(rays, i);
@@ -234,11 +234,11 @@ void occluded(RTCScene scene, EmbreeCall call, const RayBlocks& rays, HitBlocks&
     if (call.width == 16) return occlude_packets<16>(scene, call, rays, hits);
     RTCIntersectContext context = context_of(call);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (i % beam_rays == 0) fetch_ahead(rays, hits, i / beam_rays);
+        if (i % packet_size == 0) fetch_ahead(rays, hits, i / packet_size);
         if (!(rays.t_max(i) > rays.t_min(i))) continue;
         RTCRay ray = single_ray(rays, i);
         rtcOccluded1(scene, &context, &ray);
-        hits.blocks()[i / beam_rays].id[i % beam_rays] = ray.tfar < 0 ? 0 : -1;
+        hits.blocks()[i / packet_size].id[i % packet_size] = ray.tfar < 0 ? 0 : -1;
     }
 }
 

@@ -20,7 +20,7 @@ Geometry geometry_of(const CompiledScene& scene) {
     Geometry geometry;
     geometry.positions.resize(static_cast<std::size_t>(scene.triangle_count) * 3);
     for (const TriangleBlock& block : scene.hierarchy.triangle_blocks) {
-        for (std::size_t lane = 0; lane < block_width; ++lane) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
             if (block.id[lane] < 0) continue;
             for (std::size_t i = 0; i < 3; ++i)
                 geometry.positions[static_cast<std::size_t>(block.id[lane]) * 3 + i] = {

@@ -18,7 +18,7 @@ RTCIntersectContext context_of(bool coherent) {
 }
 
 Vec3 origins(const BeamRays& rays, int) { return splat3(rays.origin); }
-Vec3 origins(const ScatteredRays& rays, int at) {
+Vec3 origins(const RayPacket& rays, int at) {
     return {load(rays.origin[0] + at), load(rays.origin[1] + at), load(rays.origin[2] + at)};
 }
 
@@ -50,9 +50,9 @@ void set_valid(std::uint32_t active, std::int32_t* valid) {
 }
 
 template <class Rays>
-void intersect(const CompiledScene& scene, const Rays& rays, std::uint64_t active, bool coherent, BeamHits& hits) {
+void intersect(const CompiledScene& scene, const Rays& rays, std::uint64_t active, bool coherent, HitPacket& hits) {
     RTCIntersectContext context = context_of(coherent);
-    for (int at = 0; at < beam_rays; at += lanes) {
+    for (int at = 0; at < packet_size; at += lanes) {
         const auto own = static_cast<std::uint32_t>(active >> at) & 0xffffu;
         Real t = load(rays.t_max + at);
         Int id = Int(-1);
@@ -79,7 +79,7 @@ template <class Rays>
 std::uint64_t occluded(const CompiledScene& scene, const Rays& rays, std::uint64_t active, bool coherent) {
     RTCIntersectContext context = context_of(coherent);
     std::uint64_t blocked = 0;
-    for (int at = 0; at < beam_rays; at += lanes) {
+    for (int at = 0; at < packet_size; at += lanes) {
         auto own = static_cast<std::uint32_t>(active >> at) & 0xffffu;
         if (own == 0) continue;
         Real t = load(rays.t_max + at);
@@ -102,16 +102,16 @@ std::uint64_t occluded(const CompiledScene& scene, const Rays& rays, std::uint64
 
 }  // namespace
 
-void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits& hits) {
+void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, HitPacket& hits) {
     intersect(scene, rays, active, true, hits);
 }
 std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, bool together) {
     return occluded(scene, rays, active, together);
 }
-void intersect_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active, BeamHits& hits) {
+void intersect_packet(const CompiledScene& scene, const RayPacket& rays, std::uint64_t active, HitPacket& hits) {
     intersect(scene, rays, active, false, hits);
 }
-std::uint64_t occluded_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active) {
+std::uint64_t occluded_packet(const CompiledScene& scene, const RayPacket& rays, std::uint64_t active) {
     return occluded(scene, rays, active, false);
 }
 

@@ -70,9 +70,9 @@ Place place_of(const Geometry& geometry, const RayBlocks& rays, const HitBlocks&
     return {position + 1e-4f * flat, smooth};
 }
 
-std::size_t live_rays(const ScatteredRays& block) {
+std::size_t live_rays(const RayPacket& block) {
     std::size_t live = 0;
-    for (int i = 0; i < beam_rays; ++i) live += block.t_max[i] > block.t_min[i] ? 1 : 0;
+    for (int i = 0; i < packet_size; ++i) live += block.t_max[i] > block.t_min[i] ? 1 : 0;
     return live;
 }
 
@@ -154,7 +154,7 @@ RaySet secondary_rays(RayKind kind, const Geometry& geometry, const RaySet& prim
     }
     // Blocks of 64 of which none exists are in nobody's queue.
     RaySet compact{kind, RayBlocks(), set.live};
-    for (const ScatteredRays& block : set.rays.blocks())
+    for (const RayPacket& block : set.rays.blocks())
         if (live_rays(block) > 0) compact.rays.add(block);
     return compact;
 }

@@ -140,7 +140,7 @@ TEST(Bvh, BuildWorkGrowsAsNLogN) {
 // SAH cost of splitting every cell in the middle of its longest side, by the boxes of the triangles.
 double middle_split_cost(const Bounds& cell, const std::vector<Bounds>& boxes, int depth, const KdOptions& options) {
     if (boxes.size() <= 16 || depth == 0)
-        return half_area(cell) * options.intersection_cost * std::ceil(static_cast<double>(boxes.size()) / block_width);
+        return half_area(cell) * options.intersection_cost * std::ceil(static_cast<double>(boxes.size()) / lanes);
     const glm::vec3 size = cell.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const float middle = (cell.lower[axis] + cell.upper[axis]) / 2;
@@ -197,7 +197,7 @@ TEST(Hierarchies, HoldAMillionCoincidentTriangles) {
     const Shapes shapes{heap, {}};
     EXPECT_EQ(validate(build_bvh(shapes), shapes), "");
     const Hierarchy kd = build_kd_tree(shapes, {});
-    EXPECT_EQ(kd.triangle_blocks.size(), heap.size() / block_width);
+    EXPECT_EQ(kd.triangle_blocks.size(), heap.size() / lanes);
     EXPECT_EQ(validate(kd, shapes), "");
 }
 

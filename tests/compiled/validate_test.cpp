@@ -20,13 +20,13 @@ struct Broken {
     // A block with an empty last lane.
     TriangleBlock& partial_block() {
         for (TriangleBlock& block : hierarchy.triangle_blocks)
-            if (block.id[block_width - 1] == -1) return block;
+            if (block.id[lanes - 1] == -1) return block;
         throw std::logic_error("every block is full");
     }
 };
 
 void remove_first_triangle(TriangleBlock& block) {
-    int last = block_width - 1;
+    int last = lanes - 1;
     while (block.id[last] == -1) --last;
     for (auto& corner : block.corner)
         for (auto& axis : corner) {
@@ -58,7 +58,7 @@ TEST_P(Validate, SeesAnIdOutOfRange) {
 }
 TEST_P(Validate, SeesPaddingThatCouldBeHit) {
     Broken broken(GetParam());
-    broken.partial_block().corner[0][0][block_width - 1] = 0;
+    broken.partial_block().corner[0][0][lanes - 1] = 0;
     EXPECT_NE(broken.verdict().find("is not empty"), std::string::npos) << broken.verdict();
 }
 TEST_P(Validate, SeesAShapeTwice) {

@@ -11,17 +11,16 @@ namespace {
 
 // Sixteen at a time; the arrays are whole sixteens.
 void exp_of(const float* x, float* y, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += lanes) store_unaligned(exp(load_unaligned(x + i)), y + i);
+    for (std::size_t i = 0; i < n; i += lanes) store(exp(load(x + i)), y + i);
 }
 void asin_of(const float* x, float* y, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += lanes) store_unaligned(asin(load_unaligned(x + i)), y + i);
+    for (std::size_t i = 0; i < n; i += lanes) store(asin(load(x + i)), y + i);
 }
 void atan2_of(const float* y, const float* x, float* a, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += lanes)
-        store_unaligned(atan2(load_unaligned(y + i), load_unaligned(x + i)), a + i);
+    for (std::size_t i = 0; i < n; i += lanes) store(atan2(load(y + i), load(x + i)), a + i);
 }
 void power_of(const float* x, std::int32_t exponent, float* y, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += lanes) store_unaligned(power(load_unaligned(x + i), Int(exponent)), y + i);
+    for (std::size_t i = 0; i < n; i += lanes) store(power(load(x + i), Int(exponent)), y + i);
 }
 // Samples `first` to `first + 15` of one pixel.
 void samples_of(std::int32_t x, std::int32_t y, std::uint32_t seed, std::uint32_t first, bool aperture, float* u,
@@ -34,9 +33,9 @@ void samples_of(std::int32_t x, std::int32_t y, std::uint32_t seed, std::uint32_
     }
 }
 void disk_of(const float* u, const float* v, float* x, float* y) {
-    const Point2 p = square_to_disk({load_unaligned(u), load_unaligned(v)});
-    store_unaligned(p.x, x);
-    store_unaligned(p.y, y);
+    const Point2 p = square_to_disk({load(u), load(v)});
+    store(p.x, x);
+    store(p.y, y);
 }
 float stratum_cell_of(std::uint32_t side, std::uint32_t stratum, std::uint32_t sample, std::uint32_t seed,
                       std::uint32_t& cell) {

@@ -6,7 +6,7 @@
 
 namespace raywalk {
 
-// Arrays are whole sixteens; n counts their values.
+// Arrays are whole sixteens, 64-byte aligned; n counts their values.
 struct MathInLanes {
     void (*exp_of)(const float* x, float* y, std::size_t n);
     void (*asin_of)(const float* x, float* y, std::size_t n);

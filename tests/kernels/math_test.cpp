@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/kernels/math_lanes.h"
+#include "tracer/ground/aligned.h"
 #include "tracer/kernels/instruction_sets.h"
 
 namespace raywalk {
@@ -51,21 +52,21 @@ void on_every_target(const Check& check) {
 }
 
 // n steps from a to b.
-std::vector<float> steps(double a, double b, std::size_t n) {
-    std::vector<float> values(n);
+AlignedVector<float> steps(double a, double b, std::size_t n) {
+    AlignedVector<float> values(n);
     for (std::size_t i = 0; i < n; ++i)
         values[i] = static_cast<float>(a + (b - a) * static_cast<double>(i) / static_cast<double>(n - 1));
     return values;
 }
 
-const float awkward[] = {0.0f,  -0.0f,  1e-45f, -1e-45f, 1e-38f, -1e-38f, 1.0f, -1.0f,
-                         3e38f, -3e38f, 88.8f,  -87.4f,  1e10f,  -1e10f,  0.5f, -0.5f};
+alignas(64) const float awkward[] = {0.0f,  -0.0f,  1e-45f, -1e-45f, 1e-38f, -1e-38f, 1.0f, -1.0f,
+                                     3e38f, -3e38f, 88.8f,  -87.4f,  1e10f,  -1e10f,  0.5f, -0.5f};
 
 constexpr std::size_t count = 1 << 18;
 
 TEST(KernelMath, ExpIsWithin3e7OverItsWholeRange) {
-    const std::vector<float> x = steps(-87, 88, count);
-    std::vector<float> y(count);
+    const AlignedVector<float> x = steps(-87, 88, count);
+    AlignedVector<float> y(count);
     on_every_target([&](const MathInLanes& math) {
         math.exp_of(x.data(), y.data(), count);
         for (std::size_t i = 0; i < count; ++i)
@@ -75,7 +76,7 @@ TEST(KernelMath, ExpIsWithin3e7OverItsWholeRange) {
 
 TEST(KernelMath, ExpGoesToZeroAndNeverToNan) {
     on_every_target([&](const MathInLanes& math) {
-        float y[16];
+        alignas(64) float y[16];
         math.exp_of(awkward, y, 16);
         for (const float value : y) EXPECT_TRUE(std::isfinite(value));
         EXPECT_EQ(y[9], 0.0f);   // exp(-3e38)
@@ -85,21 +86,21 @@ TEST(KernelMath, ExpGoesToZeroAndNeverToNan) {
 }
 
 TEST(KernelMath, AsinIsWithin4e7OverItsWholeRange) {
-    const std::vector<float> x = steps(-1, 1, count);
-    std::vector<float> y(count);
+    const AlignedVector<float> x = steps(-1, 1, count);
+    AlignedVector<float> y(count);
     on_every_target([&](const MathInLanes& math) {
         math.asin_of(x.data(), y.data(), count);
         for (std::size_t i = 0; i < count; ++i) ASSERT_NEAR(y[i], std::asin(static_cast<double>(x[i])), 4e-7) << x[i];
-        float limited[16];
+        alignas(64) float limited[16];
         math.asin_of(awkward, limited, 16);
         for (const float value : limited) EXPECT_LE(std::abs(value), 1.5707964f);
     });
 }
 
 TEST(KernelMath, Atan2IsWithin6e7InEveryDirectionAtEveryScale) {
-    std::vector<float> x(count), y(count), a(count);
+    AlignedVector<float> x(count), y(count), a(count);
     for (const double scale : {1e-30, 1e-6, 1.0, 1e12, 4e37}) {
-        const std::vector<float> angles = steps(-std::numbers::pi, std::numbers::pi, count);
+        const AlignedVector<float> angles = steps(-std::numbers::pi, std::numbers::pi, count);
         for (std::size_t i = 0; i < count; ++i) {
             x[i] = static_cast<float>(scale * std::cos(static_cast<double>(angles[i])));
             y[i] = static_cast<float>(scale * std::sin(static_cast<double>(angles[i])));
@@ -116,21 +117,21 @@ TEST(KernelMath, Atan2IsWithin6e7InEveryDirectionAtEveryScale) {
 TEST(KernelMath, Atan2OfFiniteNumbersIsNeverNan) {
     on_every_target([&](const MathInLanes& math) {
         for (const float y : awkward) {
-            float ys[16], a[16];
+            alignas(64) float ys[16], a[16];
             std::fill(std::begin(ys), std::end(ys), y);
             math.atan2_of(ys, awkward, a, 16);
             for (const float value : a) EXPECT_LE(std::abs(value), 3.1415928f);
         }
-        const float zero[16] = {};
-        float a[16];
+        alignas(64) const float zero[16] = {};
+        alignas(64) float a[16];
         math.atan2_of(zero, zero, a, 16);
         EXPECT_EQ(a[0], 0.0f);
     });
 }
 
 TEST(KernelMath, PowerSquaresItsWay) {
-    const std::vector<float> x = steps(0, 1, 1 << 12);
-    std::vector<float> y(x.size());
+    const AlignedVector<float> x = steps(0, 1, 1 << 12);
+    AlignedVector<float> y(x.size());
     on_every_target([&](const MathInLanes& math) {
         for (const int n : {0, 1, 2, 5, 7, 64, 100}) {
             math.power_of(x.data(), n, y.data(), x.size());
@@ -144,7 +145,7 @@ TEST(KernelMath, PowerSquaresItsWay) {
 
 TEST(KernelSamples, FirstLiesInTheMiddleOfThePixel) {
     on_every_target([&](const MathInLanes& math) {
-        float u[16], v[16];
+        alignas(64) float u[16], v[16];
         math.samples_of(5, 7, 3, 0, false, u, v);
         EXPECT_EQ(u[0], 0.5f);
         EXPECT_EQ(v[0], 0.5f);
@@ -155,7 +156,7 @@ TEST(KernelSamples, FirstLiesInTheMiddleOfThePixel) {
 TEST(KernelSamples, AnyStretchCoversThePixelEvenly) {
     for (const bool aperture : {false, true})
         for (const std::uint32_t first : {1u, 16u, 1000u, 4'000'000'000u}) {
-            std::vector<float> u(256), v(256);
+            AlignedVector<float> u(256), v(256);
             for (std::uint32_t i = 0; i < 256; i += 16)
                 N_SCALAR::math.samples_of(100, 30, 1, first + i, aperture, &u[i], &v[i]);
             const int cells = 7;  // 256 = 16^2
@@ -171,11 +172,11 @@ TEST(KernelSamples, AnyStretchCoversThePixelEvenly) {
 }
 
 TEST(KernelSamples, AreTheSameBitsOnEveryInstructionSet) {
-    std::vector<float> first;
+    AlignedVector<float> first;
     on_every_target([&](const MathInLanes& math) {
-        std::vector<float> all;
+        AlignedVector<float> all;
         for (const bool aperture : {false, true}) {
-            float u[16], v[16];
+            alignas(64) float u[16], v[16];
             math.samples_of(16383, 12345, 99, 70'000, aperture, u, v);
             all.insert(all.end(), u, u + 16);
             all.insert(all.end(), v, v + 16);
@@ -186,7 +187,7 @@ TEST(KernelSamples, AreTheSameBitsOnEveryInstructionSet) {
 }
 
 TEST(KernelSamples, DifferByPixelAndBySeed) {
-    float u[4][16], v[16];
+    alignas(64) float u[4][16], v[16];
     N_SCALAR::math.samples_of(10, 10, 0, 1, false, u[0], v);
     N_SCALAR::math.samples_of(11, 10, 0, 1, false, u[1], v);
     N_SCALAR::math.samples_of(10, 11, 0, 1, false, u[2], v);
@@ -200,7 +201,7 @@ TEST(KernelSamples, FillTheApertureEvenly) {
     constexpr std::uint32_t samples = 4096;
     int inner = 0, quadrants[4] = {};
     for (std::uint32_t i = 0; i < samples; i += 16) {
-        float u[16], v[16], x[16], y[16];
+        alignas(64) float u[16], v[16], x[16], y[16];
         N_SCALAR::math.samples_of(3, 4, 5, i, true, u, v);
         N_SCALAR::math.disk_of(u, v, x, y);
         for (int k = 0; k < 16; ++k) {
@@ -215,8 +216,8 @@ TEST(KernelSamples, FillTheApertureEvenly) {
 }
 
 TEST(KernelSamples, SquaresCentreIsTheDisksCentre) {
-    const float half[16] = {0.5f};
-    float x[16], y[16];
+    alignas(64) const float half[16] = {0.5f};
+    alignas(64) float x[16], y[16];
     N_SCALAR::math.disk_of(half, half, x, y);
     EXPECT_EQ(x[0], 0.0f);
     EXPECT_EQ(y[0], 0.0f);

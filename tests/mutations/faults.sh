@@ -150,7 +150,7 @@ fault "beams end at the nearest hit of their rays" tracer/kernels/traversal/beam
     'reduce_max(depth, beam.group_depth)' 'reduce_min(depth, beam.group_depth)' \
     traversal_tests '*FindsTheHitsThatALoop*'
 fault "rays of a stream are lost with the last group" tracer/kernels/traversal/stream_traversal.h \
-    'g < beam_rays / lanes; ++g)' 'g < beam_rays / lanes - 1; ++g)' \
+    'g < packet_groups; ++g)' 'g < packet_groups - 1; ++g)' \
     traversal_tests '*FindsTheHitsThatALoop*'
 fault "the farthest child of a stream comes first, and the rest never" tracer/kernels/traversal/stream_traversal.h \
     'while (!stack.empty())' 'while (!stack.empty() && done == 0 && stack.size() < 2)' \

@@ -115,7 +115,7 @@ class Traversal {
 
     void visit(const Bvh& tree, std::uint32_t index) {
         const BvhNode& node = tree.nodes[index];
-        for (int slot = 0; slot < block_width; ++slot) {
+        for (int slot = 0; slot < lanes; ++slot) {
             Bounds box;
             for (int k = 0; k < 3; ++k) {
                 box.lower[k] = node.lower[k][slot];

@@ -128,7 +128,7 @@ class Blocks {
         for (std::uint32_t b = first; b < first + count; ++b) {
             if (taken_[b]) return text(kind_, " block ", b, " belongs to two leaves");
             taken_[b] = true;
-            for (int lane = 0; lane < block_width; ++lane) {
+            for (int lane = 0; lane < lanes; ++lane) {
                 const std::int32_t id = blocks_[b].id[lane];
                 if (id == -1) {
                     if (!padding(blocks_[b], lane)) return text(kind_, " block ", b, ": lane ", lane, " is not empty");
@@ -328,7 +328,7 @@ class BvhChecker : Checker {
         deepest_ = std::max(deepest_, depth);
         const BvhNode& node = tree_.nodes[index];
         std::uint32_t next_child = 0;  // inner children follow each other
-        for (int slot = 0; slot < block_width; ++slot) {
+        for (int slot = 0; slot < lanes; ++slot) {
             Bounds child;
             for (int axis = 0; axis < 3; ++axis) {
                 child.lower[axis] = node.lower[axis][slot];

@@ -66,9 +66,9 @@ struct BvhReference {
 
 // Sixteen child boxes side by side; an empty slot has lower = +inf, upper = -inf and is never entered.
 struct alignas(64) BvhNode {
-    float lower[3][block_width];
-    float upper[3][block_width];
-    std::uint32_t child[block_width];  // BvhReference bits
+    float lower[3][lanes];
+    float upper[3][lanes];
+    std::uint32_t child[lanes];  // BvhReference bits
 };
 
 struct Bvh {

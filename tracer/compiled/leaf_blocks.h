@@ -5,19 +5,17 @@
 #include <cstdint>
 #include <limits>
 
+#include "tracer/ground/aligned.h"
+
 namespace raywalk {
 
-inline constexpr int block_width = 16;
-
-inline std::uint32_t blocks_for(std::size_t shapes) {
-    return static_cast<std::uint32_t>((shapes + block_width - 1) / block_width);
-}
+inline std::uint32_t blocks_for(std::size_t shapes) { return static_cast<std::uint32_t>((shapes + lanes - 1) / lanes); }
 
 // Expected cost of testing the shapes of a leaf, in blocks, for the surface-area heuristic of both hierarchies: mostly
 // whole blocks, a little every shape, so that the cost still falls while a block empties. Whole frames of the BVH are
 // 4 to 8 % faster than with costs in blocks of four.
 inline double leaf_cost(std::uint32_t shapes) {
-    const auto blocks = (shapes + block_width - 1) / block_width;
+    const auto blocks = (shapes + lanes - 1) / lanes;
     return static_cast<double>(48 * blocks + shapes) / 64;
 }
 
@@ -26,16 +24,16 @@ inline double leaf_cost(std::uint32_t shapes) {
 struct alignas(64) TriangleBlock {
     // Without values, as `= default` would not be where an array is made: arrays of blocks are filled by all threads.
     TriangleBlock() {}  // NOLINT(modernize-use-equals-default)
-    float corner[3][3][block_width];
-    std::int32_t id[block_width];  // triangle index, CompiledScene order
+    float corner[3][3][lanes];
+    std::int32_t id[lanes];  // triangle index, CompiledScene order
 };
 
 // Empty lanes hold a NaN centre, radius 0 and id -1.
 struct alignas(64) SphereBlock {
     SphereBlock() {}  // NOLINT(modernize-use-equals-default)
-    float center[3][block_width];
-    float radius[block_width];
-    std::int32_t id[block_width];  // sphere index (not yet offset by the triangle count)
+    float center[3][lanes];
+    float radius[lanes];
+    std::int32_t id[lanes];  // sphere index (not yet offset by the triangle count)
 };
 
 inline void clear(TriangleBlock& block) {

@@ -1,4 +1,4 @@
-// Arrays that vector loads may touch: 64-byte aligned, as wide as the widest register.
+// Arrays that vector loads may touch: sixteen floats at a time, 64-byte aligned, as wide as the widest register.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,7 @@
 
 namespace raywalk {
 
+inline constexpr int lanes = 16;
 inline constexpr std::size_t vector_alignment = 64;
 
 template <class T>

@@ -10,7 +10,7 @@ namespace raywalk::bvh {
 
 namespace {
 
-constexpr std::uint32_t leaf_shapes = block_width;
+constexpr std::uint32_t leaf_shapes = lanes;
 constexpr std::uint32_t task_shapes = 2048;         // smaller ranges are built by the thread that has them
 constexpr std::uint32_t chunk_shapes = 8192;        // of a wide range: binned and moved by one task
 constexpr std::uint32_t wide_shapes = 1u << 16;     // from here on several tasks work on one range

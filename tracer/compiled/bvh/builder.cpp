@@ -91,7 +91,7 @@ class Collapse {
 
     // Opens the child of largest area until sixteen stand side by side or all are leaves.
     static void open(std::vector<Part>& parts) {
-        while (parts.size() < block_width) {
+        while (parts.size() < lanes) {
             const auto largest = std::max_element(parts.begin(), parts.end(),
                                                   [](const Part& a, const Part& b) { return a.area < b.area; });
             if (largest == parts.end() || largest->area < 0) return;

@@ -33,13 +33,13 @@ namespace {
 
 // Orders slots so that each block of sixteen holds neighbours: a beam passes by most blocks of a leaf at one test each.
 void gather_neighbours(std::span<std::uint32_t> slots, const std::vector<Bounds>& box) {
-    while (slots.size() > block_width) {
+    while (slots.size() > lanes) {
         Bounds centers;
         const auto center = [&](std::uint32_t slot) { return box[slot].lower * 0.5f + box[slot].upper * 0.5f; };
         for (const std::uint32_t slot : slots) centers.extend(center(slot));
         const glm::vec3 size = centers.size();
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        const std::size_t half = (slots.size() / block_width + 1) / 2 * block_width;
+        const std::size_t half = (slots.size() / lanes + 1) / 2 * lanes;
         std::nth_element(slots.begin(), slots.begin() + static_cast<std::ptrdiff_t>(half), slots.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return center(a)[axis] < center(b)[axis]; });
         gather_neighbours(slots.subspan(half), box);

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "tracer/ground/aligned.h"
+
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -13,8 +15,6 @@ namespace raywalk {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-inline constexpr int lanes = 16;
 
 using RealTag = hn::CappedTag<float, lanes>;
 using IntTag = hn::RebindToSigned<RealTag>;
@@ -169,7 +169,7 @@ HWY_INLINE Real& operator*=(Real& a, Real b) { return a = a * b; }
 HWY_INLINE Mask& operator&=(Mask& a, Mask b) { return a = a & b; }
 HWY_INLINE Mask& operator|=(Mask& a, Mask b) { return a = a | b; }
 
-// Memory: 64-byte aligned arrays of sixteen, unless the name says otherwise.
+// Memory: 64-byte aligned arrays of sixteen.
 HWY_INLINE Real load(const float* p) {
     Real r;
     RAYWALK_EACH(i) r.v[i] = hn::Load(RealTag(), p + i * register_lanes);
@@ -180,24 +180,8 @@ HWY_INLINE Int load(const std::int32_t* p) {
     RAYWALK_EACH(i) r.v[i] = hn::Load(IntTag(), p + i * register_lanes);
     return r;
 }
-HWY_INLINE Real load_unaligned(const float* p) {
-    Real r;
-    RAYWALK_EACH(i) r.v[i] = hn::LoadU(RealTag(), p + i * register_lanes);
-    return r;
-}
-HWY_INLINE Int load_unaligned(const std::int32_t* p) {
-    Int r;
-    RAYWALK_EACH(i) r.v[i] = hn::LoadU(IntTag(), p + i * register_lanes);
-    return r;
-}
 HWY_INLINE void store(Real a, float* p) { RAYWALK_EACH(i) hn::Store(a.v[i], RealTag(), p + i * register_lanes); }
 HWY_INLINE void store(Int a, std::int32_t* p) { RAYWALK_EACH(i) hn::Store(a.v[i], IntTag(), p + i * register_lanes); }
-HWY_INLINE void store_unaligned(Real a, float* p) {
-    RAYWALK_EACH(i) hn::StoreU(a.v[i], RealTag(), p + i * register_lanes);
-}
-HWY_INLINE void store_unaligned(Int a, std::int32_t* p) {
-    RAYWALK_EACH(i) hn::StoreU(a.v[i], IntTag(), p + i * register_lanes);
-}
 
 // The lanes of `condition` side by side from p on, which need not be aligned; up to sixteen elements from p are
 // written.
@@ -259,9 +243,10 @@ HWY_INLINE Mask mask_of_bits(std::uint32_t b) {
     return (Int(static_cast<std::int32_t>(b)) & lane_bit) == lane_bit;
 #endif
 }
+inline constexpr std::uint32_t all_lanes = (1u << lanes) - 1;
 HWY_INLINE bool any(Mask a) { return bits(a) != 0; }
 HWY_INLINE bool none(Mask a) { return bits(a) == 0; }
-HWY_INLINE bool all(Mask a) { return bits(a) == 0xffffu; }
+HWY_INLINE bool all(Mask a) { return bits(a) == all_lanes; }
 
 struct Least {
     template <class V>

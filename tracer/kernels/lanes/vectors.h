@@ -13,6 +13,18 @@ struct Vec3 {
 
 HWY_INLINE Vec3 splat3(const float* p) { return {Real(p[0]), Real(p[1]), Real(p[2])}; }
 
+// Of arrays p[axis][ray], sixteen rays from `at` on: as load and store.
+template <int size>
+HWY_INLINE Vec3 load3(const float (&p)[3][size], int at) {
+    return {load(p[0] + at), load(p[1] + at), load(p[2] + at)};
+}
+template <int size>
+HWY_INLINE void store3(Vec3 a, float (&p)[3][size], int at) {
+    store(a.x, p[0] + at);
+    store(a.y, p[1] + at);
+    store(a.z, p[2] + at);
+}
+
 HWY_INLINE Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 HWY_INLINE Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 HWY_INLINE Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec3.hpp>
 
-#include "tracer/kernels/kernels.h"
 #include "tracer/kernels/lanes/random.h"
 #include "tracer/kernels/lanes/vectors.h"
+#include "tracer/picture/tile_camera.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {
@@ -15,46 +14,6 @@ namespace HWY_NAMESPACE {
 struct CameraRays {
     Vec3 origin, direction;  // unit
 };
-
-// What is the same for all pixels of a tile: reckoned in double precision from the tile's corner, so that pixels of
-// large pictures far from the middle are as sharp as the others.
-struct TileCamera {
-    int x, y, width, height;
-    bool orthographic, common_origin;
-    float corner[3];  // perspective: direction to the tile's corner; orthographic: that point of the image plane
-    float right[3], down[3];  // one pixel
-    float eye[3], direction[3];
-    float aperture_right[3], aperture_up[3];  // aperture radius
-    float focal_distance;
-};
-
-inline TileCamera make_tile_camera(const TileJob& job) {
-    const Camera& camera = *job.camera;
-    const glm::dvec3 eye = camera.eye - job.scene->origin;
-    TileCamera c{};
-    c.x = job.x;
-    c.y = job.y;
-    c.width = job.width;
-    c.height = job.height;
-    c.orthographic = camera.projection == Projection::orthographic;
-    c.common_origin = !c.orthographic && camera.aperture_radius == 0;
-    c.focal_distance = static_cast<float>(camera.focal_distance);
-    const double half_height = c.orthographic ? camera.orthographic_half.y : camera.half_height;
-    const double half_width = c.orthographic ? camera.orthographic_half.x : half_height * job.width / job.height;
-    const double pixel_width = 2 * half_width / job.width, pixel_height = 2 * half_height / job.height;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double corner = camera.direction[axis] + camera.right[axis] * (pixel_width * job.x - half_width) +
-                              camera.up[axis] * (half_height - pixel_height * job.y);
-        c.corner[axis] = static_cast<float>(c.orthographic ? eye[axis] + corner : corner);
-        c.right[axis] = static_cast<float>(camera.right[axis] * pixel_width);
-        c.down[axis] = static_cast<float>(camera.up[axis] * -pixel_height);
-        c.eye[axis] = static_cast<float>(eye[axis]);
-        c.direction[axis] = static_cast<float>(camera.direction[axis]);
-        c.aperture_right[axis] = static_cast<float>(camera.right[axis] * camera.aperture_radius);
-        c.aperture_up[axis] = static_cast<float>(camera.up[axis] * camera.aperture_radius);
-    }
-    return c;
-}
 
 // Columns and rows in the tile of pixels 16 group to 16 group + 15 (film.h).
 HWY_INLINE Int tile_columns(int group) { return (lane_numbers() & Int(3)) + Int((group & 1) * 4); }

@@ -11,6 +11,7 @@
 #include "tracer/kernels/lanes/vectors.h"
 #include "tracer/kernels/tile_scratch.h"
 #include "tracer/kernels/traversal/intersect.h"
+#include "tracer/kernels/traversal/packet_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {
@@ -18,22 +19,13 @@ namespace HWY_NAMESPACE {
 
 inline constexpr float attenuation = 0.02f;  // mu, per scene unit
 
-HWY_INLINE Vec3 load3(const float (*p)[beam_rays], int at) {
-    return {load(p[0] + at), load(p[1] + at), load(p[2] + at)};
-}
-HWY_INLINE void store3(Vec3 a, float (*p)[beam_rays], int at) {
-    store(a.x, p[0] + at);
-    store(a.y, p[1] + at);
-    store(a.z, p[2] + at);
-}
-
 // What each hit of `shade.lit` would receive from a light at `light` if it sees it, per unit of the light's radiance:
 // shade.diffuse and shade.specular; and the shadow rays that tell, from the light to the hits. Returns which of the
 // hits would receive anything.
 HWY_INLINE std::uint64_t face_light(const float light[3], ShadeBatch& shade, BeamRays& shadow) {
     for (int axis = 0; axis < 3; ++axis) shadow.origin[axis] = light[axis];
     std::uint64_t receiving = 0;
-    for (int g = 0; g < beam_rays / lanes; ++g) {
+    for (int g = 0; g < packet_groups; ++g) {
         const std::uint32_t lit = lanes_of(shade.lit, g);
         if (lit == 0) continue;
         const int at = g * lanes;
@@ -71,14 +63,13 @@ HWY_INLINE std::uint64_t face_light(const float light[3], ShadeBatch& shade, Bea
 
 // Adds one point's light, `weight` times, to the sums of those who see it.
 HWY_INLINE void receive(std::uint64_t seeing, float weight, ShadeBatch& shade) {
-    for (int g = 0; g < beam_rays / lanes; ++g) {
+    for (int g = 0; g < packet_groups; ++g) {
         const std::uint32_t lanes_seeing = lanes_of(seeing, g);
         if (lanes_seeing == 0) continue;
         const int at = g * lanes;
         const Mask sees = mask_of_bits(lanes_seeing);
         const auto add = [&](const float* light, float* sum) HWY_ATTR {
-            const Real before = load(sum + at);
-            store(select(sees, mul_add(load(light + at), Real(weight), before), before), sum + at);
+            store_some(sees, mul_add(load(light + at), Real(weight), load(sum + at)), sum + at);
         };
         add(shade.diffuse, shade.diffuse_sum);
         add(shade.specular, shade.specular_sum);
@@ -87,7 +78,7 @@ HWY_INLINE void receive(std::uint64_t seeing, float weight, ShadeBatch& shade) {
 
 // Adds what a whole light (all its points) gave, `radiance` each point, to shade.local.
 HWY_INLINE void receive_light(const float radiance[3], ShadeBatch& shade) {
-    for (int at = 0; at < beam_rays; at += lanes) {
+    for (int at = 0; at < packet_size; at += lanes) {
         const Real diffuse = load(shade.diffuse_sum + at), specular = load(shade.specular_sum + at);
         for (int channel = 0; channel < 3; ++channel) {
             const Real received = mul_add(diffuse, load(shade.color[channel] + at), specular);
@@ -117,8 +108,8 @@ inline bool lie_together(const BeamRays& shadow, std::uint64_t active) {
     float extent = 0, reach = 0;
     for (const auto& along : shadow.direction) {
         Real lower(__builtin_inff()), upper(-__builtin_inff());
-        for (int g = 0; g < beam_rays / lanes; ++g) {
-            const Mask mine = mask_of_bits(lanes_of(active, g));
+        for (int g = 0; g < packet_groups; ++g) {
+            const Mask mine = mask_of(active, g);
             const Real end = load(along + g * lanes);
             lower = select(mine, min(end, lower), lower);
             upper = select(mine, max(end, upper), upper);
@@ -135,7 +126,7 @@ inline bool lie_together(const BeamRays& shadow, std::uint64_t active) {
 // `of_camera_rays`: they are the hits of a tile's camera rays.
 inline void light_hits(const CompiledScene& scene, const SampleSettings& settings, std::uint32_t sample,
                        bool of_camera_rays, ShadeBatch& shade, BeamRays& shadow, RayCounts& counts) {
-    for (int at = 0; at < beam_rays; at += lanes) {
+    for (int at = 0; at < packet_size; at += lanes) {
         for (auto& channel : shade.local) store(Real(0.0f), channel + at);
         store(Real(0.0f), shade.diffuse_sum + at);
         store(Real(0.0f), shade.specular_sum + at);

@@ -19,18 +19,18 @@ HWY_INLINE bool take_hits(Mask hit, Real t, Real u, Real v, std::int32_t id, int
     if constexpr (any_hit) {
         // Lanes that are not active stay so: nothing here waits for the mask that the last pair left.
         hit &= t < load(beam.rays->t_max + at);
-        beam.active &= ~rays_of(bits(hit), group);
+        beam.active &= ~rays_of(hit, group);
         return false;
     } else {
-        BeamHits& hits = *beam.hits;
-        hit &= mask_of_bits(lanes_of(beam.active, group));
+        HitPacket& hits = *beam.hits;
+        hit &= mask_of(beam.active, group);
         const Real nearest = load(hits.t + at);
         const Int own(id), nearest_id = load(hits.id + at);
         hit &= (t < nearest) | ((t == nearest) & (own < nearest_id));
         store(select(hit, t, nearest), hits.t + at);
         store(select(hit, own, nearest_id), hits.id + at);
-        store(select(hit, u, load(hits.u + at)), hits.u + at);
-        store(select(hit, v, load(hits.v + at)), hits.v + at);
+        store_some(hit, u, hits.u + at);
+        store_some(hit, v, hits.v + at);
         return any(hit);
     }
 }
@@ -61,12 +61,6 @@ struct alignas(64) BeamTriangles {
         return {vector(normal), vector(u), vector(v), Real(volume[l]), Real(spread[l])};
     }
 };
-
-HWY_INLINE void store(Vec3 value, float (&to)[3][lanes]) {
-    store(value.x, to[0]);
-    store(value.y, to[1]);
-    store(value.z, to[2]);
-}
 
 // The three weights of a triangle are linear in (U, V) but for a common factor: a triangle touches a group of rays
 // unless one of them is negative over the group's whole range, or the triangle lies behind all that the group hit.
@@ -118,21 +112,21 @@ HWY_INLINE void beam_triangles(const TriangleBlock& block, const float* origin, 
 
     const TriangleForms forms = triangle_forms(block, splat3(origin));
     BeamTriangles triangles;
-    store(forms.normal, triangles.normal);
-    store(forms.u, triangles.u);
-    store(forms.v, triangles.v);
+    store3(forms.normal, triangles.normal, 0);
+    store3(forms.u, triangles.u, 0);
+    store3(forms.v, triangles.v, 0);
     store(forms.volume, triangles.volume);
     store(forms.spread, triangles.spread);
     const TriangleEdges edges = triangle_edges(triangles, beam);
     Pairs pairs = 0;
-    for (int g = 0; g < beam_groups; ++g) pairs |= rays_of(kept & bits(touches_group(beam, g, nearest, edges)), g);
+    for (int g = 0; g < packet_groups; ++g) pairs |= rays_of(kept & bits(touches_group(beam, g, nearest, edges)), g);
 
     beam.tests_left -= std::popcount(pairs);
     bool met = false;
     const std::uint64_t active = beam.active;
     for (; pairs != 0; pairs &= pairs - 1) {
         const int pair = std::countr_zero(pairs), group = pair / lanes, l = pair % lanes, at = group * lanes;
-        const TriangleLanes r = meet_triangles(triangles.one(l), directions_of(*beam.rays, at), beam.growth[group],
+        const TriangleLanes r = meet_triangles(triangles.one(l), load3(beam.rays->direction, at), beam.growth[group],
                                                load(beam.rays->t_min + at));
         met |= take_hits<any_hit>(r.hit, r.t, r.u, r.v, block.id[l], group, beam);
     }
@@ -153,7 +147,7 @@ template <bool any_hit>
 HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std::int32_t first_id, Beam& beam) {
     const Vec3 center = sphere_centers(block, splat3(origin));
     alignas(64) float centers[3][lanes];
-    store(center, centers);
+    store3(center, centers, 0);
     const Real grown = load(block.radius) + Real(beam.padding);
     const Vec3 turned = {load(centers[beam.a]), load(centers[beam.b]), load(centers[beam.k]) * Real(beam.sign)};
     const Real nearest = turned.z - grown;
@@ -162,7 +156,7 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std:
     if (deep_enough == 0) return;
     if (!beam.ready_for_spheres) prepare_for_spheres(beam);
     Pairs pairs = 0;
-    for (int g = 0; g < beam_groups; ++g)
+    for (int g = 0; g < packet_groups; ++g)
         pairs |= rays_of(deep_enough & bits(touches_group(beam, g, nearest, turned, grown)), g);
 
     bool met = false;
@@ -170,7 +164,7 @@ HWY_INLINE void beam_spheres(const SphereBlock& block, const float* origin, std:
     for (; pairs != 0; pairs &= pairs - 1) {
         const int pair = std::countr_zero(pairs), group = pair / lanes, l = pair % lanes, at = group * lanes;
         const Vec3 own = {Real(centers[0][l]), Real(centers[1][l]), Real(centers[2][l])};
-        const SphereLanes r = meet_spheres(own, Real(block.radius[l]), directions_of(*beam.rays, at),
+        const SphereLanes r = meet_spheres(own, Real(block.radius[l]), load3(beam.rays->direction, at),
                                            beam.inverse_squared_length[group], load(beam.rays->t_min + at));
         met |= take_hits<any_hit>(r.hit, r.t, Real(0.0f), Real(0.0f), first_id + block.id[l], group, beam);
     }

@@ -25,12 +25,12 @@ struct BeamSlabs {
 HWY_INLINE BeamSlabs make_beam_slabs(const Beam& beam) {
     BeamSlabs s;
     const bool forward = beam.sign > 0;
-    s.near_bound = (forward ? 0 : 3 * block_width) + beam.k * block_width;
-    s.far_bound = (forward ? 3 * block_width : 0) + beam.k * block_width;
-    s.lower_a = beam.a * block_width;
-    s.upper_a = (3 + beam.a) * block_width;
-    s.lower_b = beam.b * block_width;
-    s.upper_b = (3 + beam.b) * block_width;
+    s.near_bound = (forward ? 0 : 3 * lanes) + beam.k * lanes;
+    s.far_bound = (forward ? 3 * lanes : 0) + beam.k * lanes;
+    s.lower_a = beam.a * lanes;
+    s.upper_a = (3 + beam.a) * lanes;
+    s.lower_b = beam.b * lanes;
+    s.upper_b = (3 + beam.b) * lanes;
     s.sign = Real(beam.sign);
     s.near_offset = Real(beam.rays->origin[beam.k] * beam.sign + beam.padding);
     s.far_offset = Real(beam.rays->origin[beam.k] * beam.sign - beam.padding);

@@ -32,7 +32,7 @@ float box_padding_of(const CompiledScene& scene, const float* origin) {
 bool hierarchy_is_empty(const CompiledScene& scene) { return scene.triangle_count + scene.sphere_count == 0; }
 
 template <bool any_hit>
-std::uint64_t traverse(const CompiledScene& scene, std::uint64_t active, const RayStream& rays, BeamHits& hits) {
+std::uint64_t traverse(const CompiledScene& scene, std::uint64_t active, const RayStream& rays, HitPacket& hits) {
     if (const Bvh* bvh = std::get_if<Bvh>(&scene.hierarchy.tree))
         return traverse_stream<any_hit>(scene, *bvh, active, rays, hits);
     return traverse_stream<any_hit>(scene, *std::get_if<KdTree>(&scene.hierarchy.tree), active, rays, hits);
@@ -46,14 +46,14 @@ void traverse(const CompiledScene& scene, Beam& beam) {
 
 // Rays of a beam as a stream; `hits` holds what is known already.
 template <bool any_hit>
-std::uint64_t trace_stream(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits* hits) {
+std::uint64_t trace_stream(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, HitPacket* hits) {
     RayStream stream;
-    BeamHits limits;
+    HitPacket limits;
     const float reach = scene_reach(scene);
-    for (int g = 0; g < beam_groups; ++g) {
+    for (int g = 0; g < packet_groups; ++g) {
         if (lanes_of(active, g) == 0) continue;
         const int at = g * lanes;
-        prepare_rays(splat3(rays.origin), directions_of(rays, at), load(rays.t_min + at), reach, g, stream);
+        prepare_rays(splat3(rays.origin), load3(rays.direction, at), load(rays.t_min + at), reach, g, stream);
         if constexpr (any_hit) store(load(rays.t_max + at), limits.t + at);
     }
     return traverse<any_hit>(scene, active, stream, any_hit ? limits : *hits);
@@ -63,7 +63,7 @@ std::uint64_t trace_stream(const CompiledScene& scene, const BeamRays& rays, std
 // is known already, t_max at least; any-hit rays have none. Returns the any-hit rays that met something.
 template <bool any_hit>
 std::uint64_t trace_beams(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, int splits,
-                          BeamHits* hits) {
+                          HitPacket* hits) {
     if (active == 0) return 0;
     if (std::popcount(active) < fewest_rays || splits > most_splits)
         return trace_stream<any_hit>(scene, rays, active, hits);
@@ -86,48 +86,49 @@ std::uint64_t trace_beams(const CompiledScene& scene, const BeamRays& rays, std:
     return beam.tests_left < 0 ? met | trace_stream<any_hit>(scene, rays, beam.active, hits) : met;
 }
 
+// Planes have no barycentric weights.
+HWY_INLINE void store_plane_hits(Real t, Int id, int at, HitPacket& hits) {
+    store(t, hits.t + at);
+    store(Real(0.0f), hits.u + at);
+    store(Real(0.0f), hits.v + at);
+    store(id, hits.id + at);
+}
+
 // Makes the rays ready; `hits` becomes the nearest planes, or misses at t_max. Returns the rays that meet a plane.
-std::uint64_t prepare_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active,
-                                RayStream& stream, BeamHits& hits) {
+std::uint64_t prepare_packet(const CompiledScene& scene, const RayPacket& rays, std::uint64_t active, RayStream& stream,
+                             HitPacket& hits) {
     const float reach = scene_reach(scene);
     std::uint64_t met = 0;
-    for (int g = 0; g < beam_groups; ++g) {
+    for (int g = 0; g < packet_groups; ++g) {
         const int at = g * lanes;
         const std::uint32_t own = lanes_of(active, g);
         Real t = load(rays.t_max + at);
         Int id = Int(-1);
         if (own != 0) {
-            const Vec3 origin = {load(rays.origin[0] + at), load(rays.origin[1] + at), load(rays.origin[2] + at)};
-            const Vec3 direction = {load(rays.direction[0] + at), load(rays.direction[1] + at),
-                                    load(rays.direction[2] + at)};
+            const Vec3 origin = load3(rays.origin, at), direction = load3(rays.direction, at);
             const Real t_min = load(rays.t_min + at);
             prepare_rays(origin, direction, t_min, reach, g, stream);
             nearest_planes(scene, origin, direction, t_min, t, id);
             id = select(mask_of_bits(own), id, Int(-1));
-            met |= static_cast<std::uint64_t>(bits(id > Int(-1))) << at;
+            met |= rays_of(id > Int(-1), g);
         }
-        store(t, hits.t + at);
-        store(Real(0.0f), hits.u + at);
-        store(Real(0.0f), hits.v + at);
-        store(id, hits.id + at);
+        store_plane_hits(t, id, at, hits);
     }
     return met;
 }
 
 }  // namespace
 
-void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, BeamHits& hits) {
-    for (int at = 0; at < beam_rays; at += lanes) {
+void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, HitPacket& hits) {
+    for (int g = 0; g < packet_groups; ++g) {
+        const int at = g * lanes;
         Real t = load(rays.t_max + at);
         Int id = Int(-1);
         if (scene.plane_count > 0) {
-            nearest_planes(scene, splat3(rays.origin), directions_of(rays, at), load(rays.t_min + at), t, id);
-            id = select(mask_of_bits(lanes_of(active, at / lanes)), id, Int(-1));
+            nearest_planes(scene, splat3(rays.origin), load3(rays.direction, at), load(rays.t_min + at), t, id);
+            id = select(mask_of(active, g), id, Int(-1));
         }
-        store(t, hits.t + at);
-        store(Real(0.0f), hits.u + at);
-        store(Real(0.0f), hits.v + at);
-        store(id, hits.id + at);
+        store_plane_hits(t, id, at, hits);
     }
     if (!hierarchy_is_empty(scene)) trace_beams<false>(scene, rays, active, 0, &hits);
 }
@@ -135,12 +136,12 @@ void intersect_beam(const CompiledScene& scene, const BeamRays& rays, std::uint6
 std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, std::uint64_t active, bool together) {
     std::uint64_t blocked = 0;
     if (scene.plane_count > 0) {
-        for (int g = 0; g < beam_groups; ++g) {
+        for (int g = 0; g < packet_groups; ++g) {
             const int at = g * lanes;
             Real t = load(rays.t_max + at);
             Int id = Int(-1);
-            nearest_planes(scene, splat3(rays.origin), directions_of(rays, at), load(rays.t_min + at), t, id);
-            blocked |= rays_of(bits(id > Int(-1)), g);
+            nearest_planes(scene, splat3(rays.origin), load3(rays.direction, at), load(rays.t_min + at), t, id);
+            blocked |= rays_of(id > Int(-1), g);
         }
         blocked &= active;
     }
@@ -150,16 +151,16 @@ std::uint64_t occluded_beam(const CompiledScene& scene, const BeamRays& rays, st
                                : trace_stream<true>(scene, rays, active, nullptr));
 }
 
-void intersect_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active, BeamHits& hits) {
+void intersect_packet(const CompiledScene& scene, const RayPacket& rays, std::uint64_t active, HitPacket& hits) {
     RayStream stream;
-    prepare_scattered(scene, rays, active, stream, hits);
+    prepare_packet(scene, rays, active, stream, hits);
     if (!hierarchy_is_empty(scene)) traverse<false>(scene, active, stream, hits);
 }
 
-std::uint64_t occluded_scattered(const CompiledScene& scene, const ScatteredRays& rays, std::uint64_t active) {
+std::uint64_t occluded_packet(const CompiledScene& scene, const RayPacket& rays, std::uint64_t active) {
     RayStream stream;
-    BeamHits hits;
-    const std::uint64_t blocked = prepare_scattered(scene, rays, active, stream, hits);
+    HitPacket hits;
+    const std::uint64_t blocked = prepare_packet(scene, rays, active, stream, hits);
     if (hierarchy_is_empty(scene)) return blocked;
     return blocked | traverse<true>(scene, active & ~blocked, stream, hits);
 }

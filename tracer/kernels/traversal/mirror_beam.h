@@ -10,15 +10,11 @@
 #include "tracer/kernels/lanes/vectors.h"
 #include "tracer/kernels/tile_scratch.h"
 #include "tracer/kernels/traversal/intersect.h"
+#include "tracer/kernels/traversal/packet_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {
 namespace HWY_NAMESPACE {
-
-// t_max of rays that end nowhere. Finite: a plane seen at a grazing angle may be hit at any distance, and the products
-// of a ray that starts there (its origin times the largest reciprocal of a direction, 1e18) have to be finite, or the
-// slab test would meet infinity minus infinity.
-inline constexpr float farthest = 1e18f;
 
 // Fewer rays of one mirror go alone.
 inline constexpr int fewest_mirrored = 8;
@@ -39,23 +35,6 @@ inline const float* mirror_normal(const CompiledScene& scene, std::int32_t id) {
                : scene.planes[static_cast<std::size_t>(id - scene.triangle_count - scene.sphere_count)].normal;
 }
 
-// The lanes of `mine` become `value`.
-template <class Lanes, class Number>
-HWY_INLINE void take(Mask mine, Lanes value, Number* to) {
-    store(select(mine, value, load(to)), to);
-}
-
-// The hits of `rays`, and no others, become those in `from`.
-inline void take_hits_of(std::uint64_t rays, const BeamHits& from, BeamHits& to) {
-    for (int at = 0; at < beam_rays; at += lanes) {
-        const Mask mine = mask_of_bits(static_cast<std::uint32_t>(rays >> at) & 0xffffu);
-        take(mine, load(from.t + at), to.t + at);
-        take(mine, load(from.u + at), to.u + at);
-        take(mine, load(from.v + at), to.v + at);
-        take(mine, load(from.id + at), to.id + at);
-    }
-}
-
 // SurfaceRecord::triangle_error of a planar mirror, 0 of a plane.
 inline float mirror_error(const CompiledScene& scene, std::int32_t mirror) {
     if (mirror >= scene.triangle_count) return 0;
@@ -69,8 +48,7 @@ inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float 
                                         std::uint64_t active, TileScratch& scratch) {
     const auto rays_where = [&](auto condition) HWY_ATTR {
         std::uint64_t result = 0;
-        for (int at = 0; at < beam_rays; at += lanes)
-            result |= static_cast<std::uint64_t>(bits(condition(load(queue.mirror + first + at)))) << at;
+        for (int g = 0; g < packet_groups; ++g) result |= rays_of(condition(load(queue.mirror + first + g * lanes)), g);
         return result;
     };
     std::uint64_t rest = active & rays_where([](Int mirror) HWY_ATTR { return mirror > Int(-1); });
@@ -86,14 +64,11 @@ inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float 
         const float* normal = mirror_normal(scene, mirror);
         const float direction[3] = {queue.direction[0][one], queue.direction[1][one], queue.direction[2][one]};
         mirror_eye(eye, normal, direction, queue.length[one], beam.origin);
-        for (int at = 0; at < beam_rays; at += lanes) {
+        for (int at = 0; at < packet_size; at += lanes) {
             const int q = first + at;
-            const Vec3 d = {load(queue.direction[0] + q), load(queue.direction[1] + q), load(queue.direction[2] + q)};
-            const Vec3 o = {load(queue.origin[0] + q), load(queue.origin[1] + q), load(queue.origin[2] + q)};
+            const Vec3 d = load3(queue.direction, q), o = load3(queue.origin, q);
             const Real length = load(queue.length + q);
-            store(d.x, beam.direction[0] + at);
-            store(d.y, beam.direction[1] + at);
-            store(d.z, beam.direction[2] + at);
+            store3(d, beam.direction, at);
             // They start as far off the mirror as rays that go alone.
             const Real reach = max(max(abs(o.x), abs(o.y)), max(abs(o.z), length));
             const Real offset = max(Real(surface_offset) * reach, Real(mirror_error(scene, mirror)));
@@ -101,13 +76,13 @@ inline std::uint64_t intersect_mirrored(const CompiledScene& scene, const float 
             store(length + offset / steepness, beam.t_min + at);
             store(Real(farthest), beam.t_max + at);
         }
-        intersect_beam(scene, beam, rays, scratch.beam_hits);
-        take_hits_of(rays, scratch.beam_hits, scratch.hits);
-        for (int at = 0; at < beam_rays; at += lanes) {
-            const int q = first + at;
-            const Mask mine = mask_of_bits(static_cast<std::uint32_t>(rays >> at) & 0xffffu);
-            for (int axis = 0; axis < 3; ++axis) take(mine, Real(beam.origin[axis]), queue.origin[axis] + q);
-            take(mine, Real(0.0f), queue.length + q);
+        intersect_beam(scene, beam, rays, scratch.some_hits);
+        copy_hits(rays, scratch.some_hits, scratch.hits);
+        for (int g = 0; g < packet_groups; ++g) {
+            const int q = first + g * lanes;
+            const Mask mine = mask_of(rays, g);
+            for (int axis = 0; axis < 3; ++axis) store_some(mine, Real(beam.origin[axis]), queue.origin[axis] + q);
+            store_some(mine, Real(0.0f), queue.length + q);
         }
         done |= rays;
     }

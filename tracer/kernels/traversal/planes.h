@@ -3,7 +3,7 @@
 
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/kernels/lanes/vectors.h"
-#include "tracer/kernels/traversal/ray_arrays.h"
+#include "tracer/kernels/traversal/ray_packet.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {

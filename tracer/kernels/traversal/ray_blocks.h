@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tracer/kernels/traversal/ray_arrays.h"
+#include "tracer/kernels/traversal/ray_packet.h"
 
 namespace raywalk {
 
@@ -15,23 +15,23 @@ class RayBlocks {
   public:
     explicit RayBlocks(std::size_t rays = 0);  // t_min starts as 0, t_max as infinity
     [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] const std::vector<ScatteredRays>& blocks() const { return blocks_; }
-    void add(const ScatteredRays& block) { blocks_.push_back(block), size_ = blocks_.size() * beam_rays; }
+    [[nodiscard]] const std::vector<RayPacket>& blocks() const { return blocks_; }
+    void add(const RayPacket& block) { blocks_.push_back(block), size_ = blocks_.size() * packet_size; }
 
-    [[nodiscard]] float origin(int axis, std::size_t i) const { return block(i).origin[axis][i % beam_rays]; }
-    [[nodiscard]] float direction(int axis, std::size_t i) const { return block(i).direction[axis][i % beam_rays]; }
-    [[nodiscard]] float t_min(std::size_t i) const { return block(i).t_min[i % beam_rays]; }
-    [[nodiscard]] float t_max(std::size_t i) const { return block(i).t_max[i % beam_rays]; }
-    float& origin(int axis, std::size_t i) { return block(i).origin[axis][i % beam_rays]; }
-    float& direction(int axis, std::size_t i) { return block(i).direction[axis][i % beam_rays]; }
-    float& t_min(std::size_t i) { return block(i).t_min[i % beam_rays]; }
-    float& t_max(std::size_t i) { return block(i).t_max[i % beam_rays]; }
+    [[nodiscard]] float origin(int axis, std::size_t i) const { return block(i).origin[axis][i % packet_size]; }
+    [[nodiscard]] float direction(int axis, std::size_t i) const { return block(i).direction[axis][i % packet_size]; }
+    [[nodiscard]] float t_min(std::size_t i) const { return block(i).t_min[i % packet_size]; }
+    [[nodiscard]] float t_max(std::size_t i) const { return block(i).t_max[i % packet_size]; }
+    float& origin(int axis, std::size_t i) { return block(i).origin[axis][i % packet_size]; }
+    float& direction(int axis, std::size_t i) { return block(i).direction[axis][i % packet_size]; }
+    float& t_min(std::size_t i) { return block(i).t_min[i % packet_size]; }
+    float& t_max(std::size_t i) { return block(i).t_max[i % packet_size]; }
 
   private:
-    [[nodiscard]] const ScatteredRays& block(std::size_t i) const { return blocks_[i / beam_rays]; }
-    ScatteredRays& block(std::size_t i) { return blocks_[i / beam_rays]; }
+    [[nodiscard]] const RayPacket& block(std::size_t i) const { return blocks_[i / packet_size]; }
+    RayPacket& block(std::size_t i) { return blocks_[i / packet_size]; }
     std::size_t size_;
-    std::vector<ScatteredRays> blocks_;  // of the last, lanes beyond size() are left out
+    std::vector<RayPacket> blocks_;  // of the last, lanes beyond size() are left out
 };
 
 // What they hit.
@@ -39,18 +39,18 @@ class HitBlocks {
   public:
     explicit HitBlocks(std::size_t rays = 0);  // ids start as -1
     [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] std::vector<BeamHits>& blocks() { return blocks_; }
+    [[nodiscard]] std::vector<HitPacket>& blocks() { return blocks_; }
 
-    [[nodiscard]] float t(std::size_t i) const { return blocks_[i / beam_rays].t[i % beam_rays]; }
-    [[nodiscard]] float u(std::size_t i) const { return blocks_[i / beam_rays].u[i % beam_rays]; }
-    [[nodiscard]] float v(std::size_t i) const { return blocks_[i / beam_rays].v[i % beam_rays]; }
-    [[nodiscard]] std::int32_t id(std::size_t i) const { return blocks_[i / beam_rays].id[i % beam_rays]; }
+    [[nodiscard]] float t(std::size_t i) const { return blocks_[i / packet_size].t[i % packet_size]; }
+    [[nodiscard]] float u(std::size_t i) const { return blocks_[i / packet_size].u[i % packet_size]; }
+    [[nodiscard]] float v(std::size_t i) const { return blocks_[i / packet_size].v[i % packet_size]; }
+    [[nodiscard]] std::int32_t id(std::size_t i) const { return blocks_[i / packet_size].id[i % packet_size]; }
     [[nodiscard]] RayHit hit(std::size_t i) const { return {t(i), u(i), v(i), id(i)}; }
     void set(std::size_t i, const RayHit& hit);
 
   private:
     std::size_t size_;
-    std::vector<BeamHits> blocks_;
+    std::vector<HitPacket> blocks_;
 };
 
 // Asks for the memory of blocks soon after block b. Who goes through blocks in order and does without waits for memory
@@ -60,8 +60,8 @@ class HitBlocks {
     if (b + blocks_ahead >= rays.blocks().size()) return;
     const auto* some = reinterpret_cast<const char*>(&rays.blocks()[b + blocks_ahead]);
     const auto* found = reinterpret_cast<const char*>(&hits.blocks()[b + blocks_ahead]);
-    for (std::size_t at = 0; at < sizeof(ScatteredRays); at += cache_line) __builtin_prefetch(some + at);
-    for (std::size_t at = 0; at < sizeof(BeamHits); at += cache_line) __builtin_prefetch(found + at, 1);
+    for (std::size_t at = 0; at < sizeof(RayPacket); at += cache_line) __builtin_prefetch(some + at);
+    for (std::size_t at = 0; at < sizeof(HitPacket); at += cache_line) __builtin_prefetch(found + at, 1);
 }
 
 }  // namespace raywalk

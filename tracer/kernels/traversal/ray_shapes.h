@@ -16,12 +16,12 @@ struct ChildSides {
 };
 HWY_INLINE ChildSides child_sides(const BvhNode& node, const RayStream& rays, int i) {
     const float* bounds = &node.lower[0][0];  // lower and upper lie side by side
-    static_assert(offsetof(BvhNode, upper) == sizeof(float) * 3 * block_width);
+    static_assert(offsetof(BvhNode, upper) == sizeof(float) * 3 * lanes);
     ChildSides sides;
     for (int a = 0; a < 3; ++a) {
         const std::int32_t near_bound = rays.near_bound[a][i];
         sides.near_side[a] = load(bounds + near_bound);
-        sides.far_side[a] = load(bounds + ((3 + 2 * a) * block_width - near_bound));
+        sides.far_side[a] = load(bounds + ((3 + 2 * a) * lanes - near_bound));
     }
     return sides;
 }

@@ -7,7 +7,7 @@
 #include "tracer/compiled/compiled_scene.h"
 #include "tracer/ground/numeric.h"
 #include "tracer/kernels/lanes/vectors.h"
-#include "tracer/kernels/traversal/ray_arrays.h"
+#include "tracer/kernels/traversal/packet_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raywalk {
@@ -16,15 +16,15 @@ namespace HWY_NAMESPACE {
 // Component by component, ray by ray. What is the same for all lanes of a test against sixteen shapes is read from here
 // and spread where it is used, which costs nothing.
 struct alignas(64) RayStream {
-    float origin[3][beam_rays], direction[3][beam_rays];
-    float t_min[beam_rays];
-    float inverse_squared_length[beam_rays];  // 1 / direction . direction
-    float growth[beam_rays];                  // growth_of
+    float origin[3][packet_size], direction[3][packet_size];
+    float t_min[packet_size];
+    float inverse_squared_length[packet_size];  // 1 / direction . direction
+    float growth[packet_size];                  // growth_of
     // Slabs: t = bound * reciprocal - near or far offset, boxes grown by the padding.
-    float reciprocal[3][beam_rays], near_offset[3][beam_rays], far_offset[3][beam_rays];
-    float padding[3][beam_rays];            // in t
-    std::int32_t near_bound[3][beam_rays];  // floats from the start of a BvhNode
-    std::uint64_t rises[3] = {};            // which rays do along the axis, rather than fall
+    float reciprocal[3][packet_size], near_offset[3][packet_size], far_offset[3][packet_size];
+    float padding[3][packet_size];            // in t
+    std::int32_t near_bound[3][packet_size];  // floats from the start of a BvhNode
+    std::uint64_t rises[3] = {};              // which rays do along the axis, rather than fall
 };
 
 // Largest coordinate of everything in the hierarchy, in magnitude.
@@ -45,10 +45,10 @@ HWY_INLINE Real growth_of(Vec3 direction) {
 HWY_INLINE void prepare_rays(Vec3 origin, Vec3 direction, Real t_min, float reach, int group, RayStream& stream) {
     const int at = group * lanes;
     const Real padding = max(max(abs(origin.x), abs(origin.y)), max(abs(origin.z), Real(reach))) * Real(box_padding);
+    store3(origin, stream.origin, at);
+    store3(direction, stream.direction, at);
     const Real o[3] = {origin.x, origin.y, origin.z}, d[3] = {direction.x, direction.y, direction.z};
     for (int a = 0; a < 3; ++a) {
-        store(o[a], stream.origin[a] + at);
-        store(d[a], stream.direction[a] + at);
         const Mask usable = abs(d[a]) >= Real(smallest_direction);
         const Real safe = select(usable, d[a], copy_sign(Real(smallest_direction), d[a]));
         const Real reciprocal = Real(1.0f) / safe, offset = o[a] * reciprocal;
@@ -57,10 +57,10 @@ HWY_INLINE void prepare_rays(Vec3 origin, Vec3 direction, Real t_min, float reac
         store(padding_in_t, stream.padding[a] + at);
         store(offset + padding_in_t, stream.near_offset[a] + at);
         store(offset - padding_in_t, stream.far_offset[a] + at);
-        const Int lower(a * block_width), upper((3 + a) * block_width);
+        const Int lower(a * lanes), upper((3 + a) * lanes);
         const Mask rises = safe > Real(0.0f);
         store(select(rises, lower, upper), stream.near_bound[a] + at);
-        stream.rises[a] |= rays_of(bits(rises), group);
+        stream.rises[a] |= rays_of(rises, group);
     }
     store(Real(1.0f) / dot(direction, direction), stream.inverse_squared_length + at);
     store(growth_of(direction), stream.growth + at);

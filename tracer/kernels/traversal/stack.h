@@ -89,7 +89,7 @@ class BvhStack {
     }
 
   private:
-    std::uint64_t keys_[(Bvh::max_depth + 1) * (block_width - 1)];
+    std::uint64_t keys_[(Bvh::max_depth + 1) * (lanes - 1)];
     int size_ = 0;
 };
 

@@ -13,8 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace raywalk {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE RayHit hit_of(const BeamHits& hits, int i) { return {hits.t[i], hits.u[i], hits.v[i], hits.id[i]}; }
-HWY_INLINE void set_hit(const RayHit& hit, int i, BeamHits& hits) {
+HWY_INLINE RayHit hit_of(const HitPacket& hits, int i) { return {hits.t[i], hits.u[i], hits.v[i], hits.id[i]}; }
+HWY_INLINE void set_hit(const RayHit& hit, int i, HitPacket& hits) {
     hits.t[i] = hit.t;
     hits.u[i] = hit.u;
     hits.v[i] = hit.v;
@@ -41,7 +41,7 @@ class StreamStack {
     [[nodiscard]] HWY_INLINE int size() const { return size_; }
 
   private:
-    StreamVisit visits_[(Bvh::max_depth + 1) * block_width];
+    StreamVisit visits_[(Bvh::max_depth + 1) * lanes];
     int size_ = 0;
 };
 
@@ -55,10 +55,10 @@ HWY_INLINE std::uint64_t octant_of(const RayStream& rays, int i) {
 // Sends the rays to the children that they enter, the nearest on top. Octant by octant, so that the sides of the boxes
 // are read once for many rays: what a test reads is what it takes.
 HWY_INLINE void visit_node(const CompiledScene& scene, const Bvh& bvh, BvhReference at, std::uint64_t active,
-                           const RayStream& rays, const BeamHits& hits, StreamStack& stack) {
+                           const RayStream& rays, const HitPacket& hits, StreamStack& stack) {
     const BvhNode& node = bvh.nodes[at.bits];
-    HWY_ALIGN std::int32_t entered[beam_rays];  // by ray: which children
-    HWY_ALIGN float first_entry[lanes];         // by child
+    HWY_ALIGN std::int32_t entered[packet_size];  // by ray: which children
+    HWY_ALIGN float first_entry[lanes];           // by child
     std::uint32_t children = 0;
     Real nearest = Real(std::numeric_limits<float>::infinity());
     for (std::uint64_t rest = active; rest != 0;) {
@@ -83,8 +83,7 @@ HWY_INLINE void visit_node(const CompiledScene& scene, const Bvh& bvh, BvhRefere
         const int child = std::countr_zero(children);
         const Int bit(std::int32_t{1} << child);
         std::uint64_t enterers = 0;
-        for (int g = 0; g < beam_rays / lanes; ++g)
-            enterers |= static_cast<std::uint64_t>(bits((load(entered + g * lanes) & bit) == bit)) << (g * lanes);
+        for (int g = 0; g < packet_groups; ++g) enterers |= rays_of((load(entered + g * lanes) & bit) == bit, g);
         stack.push({enterers & active, {node.child[child]}, first_entry[child]}, base);
     }
 }
@@ -92,15 +91,15 @@ HWY_INLINE void visit_node(const CompiledScene& scene, const Bvh& bvh, BvhRefere
 // What the rays of a stream found in one block, before each takes its nearest: in this order no ray's test waits for
 // another's outcome.
 struct BlockHits {
-    alignas(64) float t[beam_rays][lanes], u[beam_rays][lanes], v[beam_rays][lanes];
-    std::uint32_t lanes_hit[beam_rays];
-    int ray[beam_rays];
+    alignas(64) float t[packet_size][lanes], u[packet_size][lanes], v[packet_size][lanes];
+    std::uint32_t lanes_hit[packet_size];
+    int ray[packet_size];
 };
 
 // Of triangles or spheres, ids counted from first_id; returns the any-hit rays that are done.
 template <bool any_hit, class Block>
 HWY_INLINE std::uint64_t visit_block(const Block& block, std::int32_t first_id, std::uint64_t active,
-                                     const RayStream& rays, BeamHits& hits) {
+                                     const RayStream& rays, HitPacket& hits) {
     constexpr bool has_weights = std::is_same_v<Block, TriangleBlock>;
     BlockHits found;
     int count = 0;
@@ -137,7 +136,7 @@ HWY_INLINE std::uint64_t visit_block(const Block& block, std::int32_t first_id, 
 // Tests the blocks of a leaf; returns the any-hit rays that are done.
 template <bool any_hit>
 HWY_INLINE std::uint64_t visit_leaf(const CompiledScene& scene, BvhReference leaf, std::uint64_t active,
-                                    const RayStream& rays, BeamHits& hits) {
+                                    const RayStream& rays, HitPacket& hits) {
     std::uint64_t done = 0;
     for (std::uint32_t i = leaf.first(), end = i + leaf.blocks(); i != end; ++i)
         done |= leaf.spheres()
@@ -150,7 +149,7 @@ HWY_INLINE std::uint64_t visit_leaf(const CompiledScene& scene, BvhReference lea
 // Returns which any-hit rays met something; `hits` holds for each ray what is known already, at first t_max.
 template <bool any_hit>
 std::uint64_t traverse_stream(const CompiledScene& scene, const Bvh& bvh, std::uint64_t active, const RayStream& rays,
-                              BeamHits& hits) {
+                              HitPacket& hits) {
     StreamStack stack;
     stack.push({active, BvhReference::inner(0), 0}, 0);
     std::uint64_t done = 0;
@@ -174,7 +173,7 @@ std::uint64_t traverse_stream(const CompiledScene& scene, const Bvh& bvh, std::u
 
 template <bool any_hit>
 std::uint64_t traverse_stream(const CompiledScene& scene, const KdTree& tree, std::uint64_t active,
-                              const RayStream& rays, BeamHits& hits) {
+                              const RayStream& rays, HitPacket& hits) {
     std::uint64_t done = 0;
     for (; active != 0; active &= active - 1) {
         const int i = std::countr_zero(active);
