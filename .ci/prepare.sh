@@ -1,9 +1,9 @@
 # Sourced by run.sh, test.sh and bench.sh: what a fresh Debian 12 machine needs, installed and built. Silent about what is
 # already there. The caller sets `root`, the folder of the project. All talk goes to stderr.
 
-build_packages=(g++ cmake ninja-build pkg-config libvulkan-dev libglfw3-dev libglm-dev glslang-tools libopenimageio-dev
+build_packages=(g++ cmake ninja-build pkg-config libvulkan-dev libglfw3-dev libx11-dev libglm-dev glslang-tools libopenimageio-dev
     libpng-dev libjpeg-dev libhwy-dev libfast-float-dev nlohmann-json3-dev libcli11-dev)
-test_packages=(libgtest-dev libgmock-dev libx11-dev libxtst-dev vulkan-validationlayers xvfb xauth xdotool imagemagick
+test_packages=(libgtest-dev libgmock-dev libxtst-dev vulkan-validationlayers xvfb xauth xdotool x11-utils x11-xkb-utils procps imagemagick
     openimageio-tools)
 bench_packages=(libembree-dev libtinyobjloader-dev libassimp-dev)
 full_test_packages=(clang llvm libomp-dev clang-format clang-tidy gcovr)

@@ -6,6 +6,7 @@
 
 #include "app/commands.h"
 #include "app/display/frame_writer.h"
+#include "app/display/no_display.h"
 #include "app/display/presenter.h"
 #include "app/process/console.h"
 #include "app/process/interrupts.h"

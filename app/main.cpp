@@ -1,6 +1,7 @@
 // raywalk: walk through a ray-traced scene, or render it.
 #include <fcntl.h>
 #include <omp.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -43,7 +44,8 @@ void keep_standard_streams() {
     _exit(exit_failed);
 }
 
-// For what counts only when a program is loaded; if that fails it goes on as it is.
+// For what counts only when a program is loaded; if that fails it goes on as it is. The name that ps shows becomes
+// "exe", and main says it again.
 void start_again(char** arguments) { execv("/proc/self/exe", arguments); }
 
 // OpenMP's threads spin after every parallel region unless told otherwise, and so take the cores from the threads that
@@ -91,6 +93,7 @@ int run(const std::vector<std::string>& words, char** arguments) {
 
 int main(int count, char** arguments) {
     using namespace raywalk;
+    prctl(PR_SET_NAME, "raywalk");
     keep_standard_streams();
     catch_interrupts();
     std::set_terminate(end_by_terminate);

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/display/no_display.h"
 #include "app/process/console.h"
 #include "app/process/interrupts.h"
 #include "app/process/statistics.h"
@@ -13,7 +14,8 @@
 namespace raywalk {
 namespace {
 
-constexpr std::uint32_t default_sample_limit = 4096;  // a pixel: no eye sees another one
+// A pixel, or fewer where the picture stands still before: no eye sees another one, and laptops stay cool.
+constexpr std::uint32_t default_sample_limit = 256;
 
 // Milliseconds below which so many of a hundred lie.
 nlohmann::ordered_json percentiles(std::vector<double> seconds) {
@@ -60,7 +62,7 @@ int walk_in_window(const Options& options, const LoadedScene& loaded) {
     Presenter presenter(window.handle());
     if (options.verbosity == Verbosity::verbose) print_note("Vulkan device: " + presenter.device_name());
     if (options.verbosity != Verbosity::quiet)
-        print_note("W S A D walk, arrows turn, T changes the projection, [ ] the exposure, Q quits");
+        print_note("W S A D walk, arrows turn, T changes the projection, [ ] the exposure, Q, Ctrl+Q or Escape quits");
 
     const std::uint32_t limit = options.samples_per_pixel.value_or(default_sample_limit);
     Options of_window = options;  // a window that the screen has no room for is smaller than the picture
@@ -75,6 +77,7 @@ int walk_in_window(const Options& options, const LoadedScene& loaded) {
                         {.opening = opening,
                          .exposure = options.exposure.value_or(Exposure{}).value,
                          .sample_limit = limit,
+                         .until_still = !options.samples_per_pixel,
                          .content = presenter.preferred_content(),
                          .frame_ready = Window::wake},
                         view);

@@ -19,6 +19,7 @@ struct FrameInfo {
     FrameContent content = FrameContent::display;
     std::uint32_t samples = 0;    // a pixel; 0 for a preview of reduced size
     double trace_seconds = 0;     // what tracing it took
+    bool finished = false;        // no more samples of this view will come
     std::uint64_t camera_id = 0;  // which camera it shows: counts the changes of the view
 };
 

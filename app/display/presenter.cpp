@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "app/display/no_display.h"
 #include "app/display/vulkan_device.h"
 #include "app/display/vulkan_frame.h"
 #include "tracer/ground/error.h"
@@ -39,6 +40,8 @@ auto with_device_errors(const VulkanDevice& device, Calls&& calls) {
         throw WorkError(
             "the Vulkan device " + device.name +
             " was lost (its driver was reset or removed); start again, or use `-render OUT`, which needs none");
+    } catch (const vk::SurfaceLostKHRError&) {
+        throw NoDisplayError("the display was lost: its server ended, or the window did");
     } catch (const vk::SystemError& error) {
         throw WorkError("the Vulkan device " + device.name + " failed: " + error.what());
     }
@@ -55,8 +58,7 @@ std::vector<const char*> window_extensions() {
     if (!names) {
         make_instance({});  // says what is missing where Vulkan is not there at all
         throw NoDisplayError(
-            "no Vulkan driver can show pictures on this display"
-            "\n  On Debian: apt install mesa-vulkan-drivers (a software driver, works everywhere)."
+            "no Vulkan driver can show pictures on this display" + vulkan_driver_advice() +
             "\n  Without a display, `--capture OUT` shows what the window would; `-render OUT` needs no Vulkan.");
     }
     return {names, names + count};

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,17 +13,11 @@ struct GLFWwindow;
 
 namespace raywalk {
 
-// No Vulkan library, no device, no display (exit code 4). Says what to do.
-class NoDisplayError : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
-
 // How a frame came to its target, for statistics and tests.
 enum class FramePath { copy, scale, resolve, resolve_and_scale };
 
 // Shows frames in a window. Belongs to one thread, but for exchange(), whose writing side is the render thread's.
-// Throws WorkError when the device is lost.
+// Throws WorkError when the device is lost, NoDisplayError where nothing can be shown or the display is lost.
 class Presenter {
   public:
     explicit Presenter(GLFWwindow* window);

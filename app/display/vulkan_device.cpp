@@ -4,15 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "app/display/presenter.h"
+#include "app/display/no_display.h"
 #include "tracer/ground/error.h"
 
 namespace raywalk {
 namespace {
 
-constexpr const char* no_vulkan_advice =
-    "\n  On Debian: apt install mesa-vulkan-drivers (a software driver, works everywhere)."
-    "\n  Without Vulkan, `-render OUT` still makes a picture.";
+constexpr const char* without_vulkan = "\n  Without Vulkan, `-render OUT` still makes a picture.";
 
 int preference(vk::PhysicalDeviceType type) {
     switch (type) {
@@ -34,7 +32,8 @@ bool has_extension(const vk::raii::PhysicalDevice& device, std::string_view want
     return std::ranges::any_of(extensions, [&](const auto& e) { return wanted == e.extensionName.data(); });
 }
 
-// A queue family that draws and, where there is a surface, presents to it.
+// A queue family that draws and, where there is a surface, presents to it. (Of a display of 16 bits a pixel a driver
+// may say that it presents to it, and offer no format.)
 std::optional<std::uint32_t> suitable_family(const vk::raii::PhysicalDevice& device, vk::SurfaceKHR surface) {
     if (device.getProperties().apiVersion < VK_API_VERSION_1_3) return {};
     const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan13Features>();
@@ -44,7 +43,7 @@ std::optional<std::uint32_t> suitable_family(const vk::raii::PhysicalDevice& dev
     const auto families = device.getQueueFamilyProperties();
     for (std::uint32_t i = 0; i < families.size(); ++i)
         if ((families[i].queueFlags & vk::QueueFlagBits::eGraphics) &&
-            (!surface || device.getSurfaceSupportKHR(i, surface)))
+            (!surface || (device.getSurfaceSupportKHR(i, surface) && !device.getSurfaceFormatsKHR(surface).empty())))
             return i;
     return {};
 }
@@ -65,8 +64,9 @@ VulkanInstance make_instance(std::span<const char* const> extensions) {
     try {
         context.emplace();
     } catch (const std::exception&) {
-        throw NoDisplayError(std::string("no Vulkan: the loader library libvulkan.so.1 was not found") +
-                             no_vulkan_advice);
+        throw NoDisplayError(std::string("no Vulkan: the loader library libvulkan.so.1 was not found"
+                                         "\n  On Debian: apt install libvulkan1 mesa-vulkan-drivers") +
+                             without_vulkan);
     }
     try {
         const vk::ApplicationInfo application{
@@ -78,7 +78,7 @@ VulkanInstance make_instance(std::span<const char* const> extensions) {
         return {std::move(*context), std::move(instance)};
     } catch (const vk::SystemError& error) {
         throw NoDisplayError(std::string("no Vulkan: no driver could be opened (") + error.what() + ")" +
-                             no_vulkan_advice);
+                             vulkan_driver_advice() + without_vulkan);
     }
 }
 
@@ -105,7 +105,7 @@ VulkanDevice make_device(const VulkanInstance& instance, vk::SurfaceKHR surface)
         throw NoDisplayError((devices.empty() ? std::string("no Vulkan device was found")
                               : surface       ? std::string("no Vulkan 1.3 device can show pictures on this display")
                                               : std::string("no Vulkan 1.3 device was found")) +
-                             no_vulkan_advice);
+                             vulkan_driver_advice() + without_vulkan);
     }
 
     const float priority = 1;

@@ -4,8 +4,12 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
-#include "app/display/presenter.h"
+#include "app/display/icon.h"
+#include "app/display/no_display.h"
+#include "app/display/x11.h"
 
 namespace raywalk {
 namespace {
@@ -30,19 +34,44 @@ glm::ivec2 fitting_screen(glm::ivec2 size) {
     return {std::max(1, static_cast<int>(size.x * shrink)), std::max(1, static_cast<int>(size.y * shrink))};
 }
 
+void set_icon(GLFWwindow* window) {
+    std::array<std::vector<std::uint8_t>, 3> pixels;
+    std::array<GLFWimage, 3> images{};
+    constexpr std::array sides = {16, 32, 64};
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        pixels[i] = icon_pixels(sides[i]);
+        images[i] = {sides[i], sides[i], pixels[i].data()};
+    }
+    glfwSetWindowIcon(window, static_cast<int>(images.size()), images.data());
+}
+
 Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
+
+// Whether the keys in the places of letters are labelled with Latin ones.
+bool layout_is_latin() {
+    for (int key = GLFW_KEY_A; key <= GLFW_KEY_Z; ++key) {
+        const char* text = glfwGetKeyName(key, 0);
+        if (text != nullptr && letter_of(key, {text, true}) != '\0') return true;
+    }
+    return false;
+}
 
 void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
     if (action == GLFW_REPEAT) return;
     Window& self = of(window);
     const double now = Window::now();
     const bool down = action == GLFW_PRESS;
-    // Chords belong to the desktop; releases count always, as the modifier may have come after the press.
-    if (down && (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER))) return;
+    const char* text = glfwGetKeyName(key, scancode);
+    const Label label = {text != nullptr ? text : "", layout_is_latin()};
+    auto known = walk_key(key, label);
+    // Chords belong to the desktop, but for Ctrl+Q; releases count always, as the modifier may have come after the
+    // press.
+    if (down && (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER))) {
+        if ((modifiers & GLFW_MOD_CONTROL) == 0 || letter_of(key, label) != 'q') return;
+        known = WalkKey::quit;
+    }
     if (down && key == GLFW_KEY_RIGHT_BRACKET) ++self.exposure_presses;
     if (down && key == GLFW_KEY_LEFT_BRACKET) --self.exposure_presses;
-    const char* label = glfwGetKeyName(key, scancode);
-    const auto known = walk_key(key, label ? label : "");
     if (!known) return;
     if (down)
         self.input.press(*known, now);
@@ -52,7 +81,16 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers
 
 }  // namespace
 
-std::optional<WalkKey> walk_key(int glfw_key, std::string_view label) {
+char letter_of(int glfw_key, const Label& label) {
+    // GLFW names places by the capital letters of a US keyboard.
+    const bool letter_place = glfw_key >= GLFW_KEY_A && glfw_key <= GLFW_KEY_Z;
+    if (!label.latin || label.text.empty()) return letter_place ? static_cast<char>(glfw_key | 0x20) : '\0';
+    if (label.text.size() != 1) return '\0';
+    const auto letter = static_cast<char>(label.text[0] | 0x20);
+    return letter >= 'a' && letter <= 'z' ? letter : '\0';
+}
+
+std::optional<WalkKey> walk_key(int glfw_key, const Label& label) {
     switch (glfw_key) {
         case GLFW_KEY_W:
             return WalkKey::forward;
@@ -75,13 +113,21 @@ std::optional<WalkKey> walk_key(int glfw_key, std::string_view label) {
         default:
             break;
     }
-    if (label == "t" || label == "T" || (label.empty() && glfw_key == GLFW_KEY_T)) return WalkKey::toggle;
-    if (label == "q" || label == "Q" || (label.empty() && glfw_key == GLFW_KEY_Q)) return WalkKey::quit;
-    return {};
+    switch (letter_of(glfw_key, label)) {
+        case 't':
+            return WalkKey::toggle;
+        case 'q':
+            return WalkKey::quit;
+        default:
+            return {};
+    }
 }
 
 Window::Window(glm::ivec2 size, const std::string& title) {
     if (!glfwInit()) no_display("no display for the window");
+    end_when_the_display_is_lost();
+    glfwWindowHintString(GLFW_X11_CLASS_NAME, "Raywalk");
+    glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "raywalk");
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     const glm::ivec2 fitting = fitting_screen(size);
@@ -94,10 +140,13 @@ Window::Window(glm::ivec2 size, const std::string& title) {
         glfwTerminate();
         throw NoDisplayError(what + no_window_advice);
     }
+    set_icon(window_);
     connect();
+    coverage_.emplace(window_);
 }
 
 Window::~Window() {
+    coverage_.reset();
     glfwDestroyWindow(window_);
     glfwTerminate();
 }
@@ -131,6 +180,7 @@ void Window::wait(double seconds) {
 }
 void Window::wake() { glfwPostEmptyEvent(); }
 double Window::now() { return glfwGetTime(); }
+bool Window::unseen() { return glfwGetWindowAttrib(window_, GLFW_ICONIFIED) != 0 || coverage_->covered(); }
 bool Window::close_requested() const { return glfwWindowShouldClose(window_); }
 
 }  // namespace raywalk

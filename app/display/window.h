@@ -6,16 +6,27 @@
 #include <string>
 #include <string_view>
 
+#include "app/display/x11.h"
 #include "app/walk/input.h"
 
 struct GLFWwindow;
 
 namespace raywalk {
 
+// What is printed on a key, UTF-8, empty if unknown; `latin`: whether its layout has Latin letters.
+struct Label {
+    std::string_view text;
+    bool latin = true;
+};
+
+// The letter that a key means, in lower case; 0: none. What is printed on it, or where the layout has no Latin letters
+// (Cyrillic, Greek, Hebrew, Arabic) what a US keyboard has in its place, which `glfw_key` names.
+char letter_of(int glfw_key, const Label& label);
+
 // What a key of the keyboard does. Walking goes by the key's place, so that W, S, A, D lie as they do on a US keyboard
-// whatever is printed on them (`glfw_key` names places); T and Q go by what is printed (`label`, empty if unknown),
-// so that the key labelled A of a French keyboard, in the place of Q, does not quit. Escape quits everywhere.
-std::optional<WalkKey> walk_key(int glfw_key, std::string_view label);
+// whatever is printed on them; T and Q go by letter_of, so that the key labelled A of a French keyboard, in the place
+// of Q, does not quit. Escape and Ctrl+Q quit everywhere.
+std::optional<WalkKey> walk_key(int glfw_key, const Label& label);
 
 class Window {
   public:
@@ -42,10 +53,13 @@ class Window {
     bool resized = false;
     bool damaged = false;  // to be drawn again
     [[nodiscard]] bool close_requested() const;
+    // Minimised, or wholly covered: nobody sees a new frame.
+    [[nodiscard]] bool unseen();
 
   private:
     void connect();
     GLFWwindow* window_ = nullptr;
+    std::optional<Coverage> coverage_;
 };
 
 }  // namespace raywalk

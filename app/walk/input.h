@@ -1,6 +1,7 @@
 // Keys of the walk, by time: what is pressed and held between two moments moves the camera (spec 2).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -22,6 +23,9 @@ class Input {
 
     // The camera at `seconds`, from the one at the last call. Events since then act in the order of their arrival.
     Camera advance(const Camera& camera, double seconds);
+
+    // Held keys move nothing in the time before `seconds` that no advance has seen: the walk stood still then.
+    void skip(double seconds) { now_ = std::max(now_, seconds); }
 
     // Whether the camera moves or will move by keys that are down.
     [[nodiscard]] bool moving() const;

@@ -1,6 +1,7 @@
 #include "app/walk/render_thread.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,9 @@ namespace {
 constexpr double patience_of_moving_frame = 0.1;   // frames that are always given up show nothing
 constexpr double patience_of_opening_frame = 0.5;  // the exposure of the whole walk hangs on it
 constexpr double no_patience = 0;
+
+// Fewer samples may agree by chance.
+constexpr std::uint32_t first_compared_samples = 16;
 
 constexpr double first_sample_interval = 0.04;  // seconds between frames that show tiles as they come
 // Seconds between frames of a standing view: the longer it stands, the less a sample changes.
@@ -58,6 +62,12 @@ void RenderThread::expose(float factor) {
     changed_.notify_all();
 }
 
+void RenderThread::rest(bool resting) {
+    if (resting_.exchange(resting) == resting) return;
+    const std::lock_guard lock(mutex_);
+    changed_.notify_all();
+}
+
 std::exception_ptr RenderThread::failure() const {
     const std::lock_guard lock(mutex_);
     return failure_;
@@ -95,15 +105,16 @@ RenderThread::Goal RenderThread::current_goal() const {
 std::optional<RenderThread::Goal> RenderThread::next_goal() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] {
-        return stop_ || goal_.id != shown_id_ || goal_.exposure_id != shown_exposure_id_ ||
-               (!goal_.moving && !finished(goal_));
+        if (stop_) return true;
+        return !resting_ && (goal_.id != shown_id_ || goal_.exposure_id != shown_exposure_id_ ||
+                             (!goal_.moving && !finished(goal_)));
     });
     if (stop_) return {};
     return goal_;
 }
 
 bool RenderThread::finished(const Goal& goal) const {
-    return renderer_.view() == goal.view && renderer_.samples() >= setup_.sample_limit;
+    return renderer_.view() == goal.view && (still_ || renderer_.samples() >= setup_.sample_limit);
 }
 
 float RenderThread::exposure() const { return setup_.exposure.value_or(opening_exposure_) * exposure_factor_; }
@@ -116,8 +127,8 @@ View RenderThread::scaled(const View& view) const {
     return small;
 }
 
-// Brings every tile to `samples`. Given up, then false, when this thread is to end, or when a newer view waits and
-// `patience` seconds are over.
+// Brings every tile to `samples`. Given up, then false, when this thread is to end or to rest, or when a newer view
+// waits and `patience` seconds are over.
 bool RenderThread::trace(const Goal& goal, std::uint32_t samples, double patience,
                          const std::function<void(int)>& tile_done) {
     std::atomic<bool> cancel = false;
@@ -127,7 +138,7 @@ bool RenderThread::trace(const Goal& goal, std::uint32_t samples, double patienc
     const bool whole = renderer_.render_until(samples, cancel, [&](int tile) {
         tiles.fetch_add(1, std::memory_order_relaxed);
         if (tile_done) tile_done(tile);
-        if (stopping_.load(std::memory_order_relaxed) ||
+        if (stopping_.load(std::memory_order_relaxed) || resting_.load(std::memory_order_relaxed) ||
             (goal_id_.load(std::memory_order_relaxed) != goal.id && seconds_between(start, Clock::now()) >= patience))
             cancel.store(true, std::memory_order_relaxed);
     });
@@ -164,6 +175,8 @@ void RenderThread::open(const Goal& goal) {
 void RenderThread::trace_preview(const Goal& goal) {
     const View view = scaled(goal.view);
     renderer_.set_view(view);
+    compared_.clear();
+    still_ = false;
     standing_since_ = Clock::now();
     if (!trace(goal, 1, patience_of_moving_frame)) return;
     moving_frame_seconds_.push_back(last_trace_seconds_);
@@ -213,22 +226,37 @@ void RenderThread::trace_more_samples(const Goal& goal) {
     const double pass = pacing_.seconds_for({goal.view.width, goal.view.height});
     const auto passes = static_cast<std::uint32_t>(std::clamp(interval / pass, 1.0, 64.0));
     const std::uint32_t had = renderer_.samples();
-    const std::uint32_t target = had + std::min(passes, setup_.sample_limit - had);
-    if (trace(goal, target, no_patience)) publish(goal);
+    std::uint32_t target = had + std::min(passes, setup_.sample_limit - had);
+    if (setup_.until_still) target = std::min(target, std::bit_floor(had) * 2);
+    if (!trace(goal, target, no_patience)) return;
+    if (setup_.until_still && target >= first_compared_samples && std::has_single_bit(target)) compare_with_half(goal);
+    publish(goal);
+}
+
+// Whether the picture still changes: by the display values at half as many samples.
+void RenderThread::compare_with_half(const Goal& goal) {
+    std::vector<std::uint32_t> picture(static_cast<std::size_t>(goal.view.width) * goal.view.height);
+    resolve_into(picture, renderer_.film(), renderer_.kernels(), exposure(), renderer_.threads());
+    still_ = picture == compared_;
+    compared_ = std::move(picture);
 }
 
 // Another exposure of what is there.
 void RenderThread::resolve_again(const Goal& goal) {
     shown_exposure_id_ = goal.exposure_id;
+    compared_.clear();
+    still_ = false;
     if (renderer_.samples() > 0 && goal.id == shown_id_) publish(goal);
 }
 
 void RenderThread::publish(const Goal& goal) {
     const bool full = renderer_.view() == goal.view;
-    publish_film(
-        exchange_, setup_.content,
-        {.samples = full ? renderer_.samples() : 0, .trace_seconds = last_trace_seconds_, .camera_id = goal.id},
-        renderer_.film(), renderer_.kernels(), exposure(), renderer_.threads());
+    publish_film(exchange_, setup_.content,
+                 {.samples = full ? renderer_.samples() : 0,
+                  .trace_seconds = last_trace_seconds_,
+                  .finished = full && finished(goal),
+                  .camera_id = goal.id},
+                 renderer_.film(), renderer_.kernels(), exposure(), renderer_.threads());
     shown_id_ = goal.id;
     last_publish_ = Clock::now();
     setup_.frame_ready();

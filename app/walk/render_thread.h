@@ -23,6 +23,7 @@ class RenderThread {
         View opening;                    // exposure is normalised to this picture (spec 4.8)
         std::optional<float> exposure;   // a fixed factor instead
         std::uint32_t sample_limit = 1;  // a pixel; then the thread sleeps
+        bool until_still = false;        // or earlier, when twice the samples changed no display value
         FrameContent content = FrameContent::display;
         std::function<void()> frame_ready;  // called by this thread after each frame
     };
@@ -35,6 +36,9 @@ class RenderThread {
     std::uint64_t show(const View& view, bool moving);
     // Multiplies the exposure by `factor`; costs no sample.
     void expose(float factor);
+
+    // Traces nothing while nobody sees it.
+    void rest(bool resting);
 
     // What this thread died of, if it did; to be thrown again by the caller's thread.
     [[nodiscard]] std::exception_ptr failure() const;
@@ -63,6 +67,7 @@ class RenderThread {
     void trace_more_samples(const Goal& goal);
     bool trace(const Goal& goal, std::uint32_t samples, double patience,
                const std::function<void(int)>& tile_done = {});
+    void compare_with_half(const Goal& goal);
     void publish(const Goal& goal);
     void resolve_again(const Goal& goal);
     [[nodiscard]] View scaled(const View& view) const;
@@ -78,7 +83,7 @@ class RenderThread {
     bool stop_ = false;
     std::exception_ptr failure_;
     std::atomic<std::uint64_t> goal_id_ = 1;
-    std::atomic<bool> stopping_ = false;
+    std::atomic<bool> stopping_ = false, resting_ = false;
     std::atomic<float> exposure_factor_ = 1;  // the user's
 
     // This thread's own.
@@ -87,7 +92,9 @@ class RenderThread {
     bool opened_ = false;         // opening_exposure_ will not change any more
     std::uint64_t shown_id_ = 0;  // the view of the last frame published
     std::uint64_t shown_exposure_id_ = 0;
-    Clock::time_point standing_since_;  // of the present view
+    Clock::time_point standing_since_;     // of the present view
+    std::vector<std::uint32_t> compared_;  // display values at the last power of two of samples
+    bool still_ = false;                   // more samples would change none of them
     Clock::time_point last_publish_;
     double last_trace_seconds_ = 0;
     std::vector<double> moving_frame_seconds_;

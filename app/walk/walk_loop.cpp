@@ -14,6 +14,7 @@ namespace {
 
 constexpr double present_interval = 1.0 / 60;  // seconds; the driver's FIFO does not always hold frames back
 constexpr double moving_interval = 1.0 / 120;  // between steps of the camera by held keys
+constexpr double longest_step = 0.1;           // of held keys: after a stall the camera does not leap
 constexpr double standing_after = 0.15;        // a key that is held in vain, at the end of a turn, moves nothing
 constexpr double idle_interval = 0.2;          // between looks for a signal to end
 constexpr double title_interval = 0.25;
@@ -25,8 +26,10 @@ std::string title_of(const std::string& name, const FrameInfo& frame, std::uint3
     char text[80];
     if (frame.samples == 0)
         std::snprintf(text, sizeof text, "preview %d x %d", frame.width, frame.height);
+    else if (frame.finished)
+        std::snprintf(text, sizeof text, "%u sample%s", frame.samples, frame.samples == 1 ? "" : "s");
     else
-        std::snprintf(text, sizeof text, "%u of %u sample%s", frame.samples, limit, limit == 1 ? "" : "s");
+        std::snprintf(text, sizeof text, "%u of %u samples", frame.samples, limit);
     std::string title = "Raywalk - " + name + " - " + text;
     if (frame.trace_seconds > 0) {
         std::snprintf(text, sizeof text, " - %.0f ms (%.0f/s)", frame.trace_seconds * 1000, 1 / frame.trace_seconds);
@@ -83,6 +86,7 @@ void Walk::follow_input(double now) {
         render.expose(std::pow(exposure_per_press, static_cast<float>(window.exposure_presses)));
         window.exposure_presses = 0;
     }
+    window.input.skip(now - longest_step);
     view.camera = window.input.advance(view.camera, now);
     moving = window.input.moving() && now - last_change < standing_after;
     const std::uint64_t id = render.show(view, moving);
@@ -131,6 +135,7 @@ WalkRecord walk_loop(Window& window, Presenter& presenter, RenderThread& render,
     for (;;) {
         const double now = Window::now();
         if (const auto failure = render.failure()) std::rethrow_exception(failure);
+        render.rest(window.unseen());
         walk.follow_input(now);
         walk.record.interrupted = interrupted();
         if (window.input.quit() || window.close_requested() || walk.record.interrupted) break;

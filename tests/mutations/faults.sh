@@ -198,3 +198,20 @@ fault "inward normals stay inward" tracer/kernels/shading/surface.h \
 fault "shadow rays start on flat faces" tracer/kernels/shading/surface.h \
     'select(known & (dot(lift, facing) > zero), lift, s.lift)' 's.lift' \
     shading_tests 'FacetedBall.IsLitWhereItsNormalsFaceTheLight'
+
+# The walk's window.
+fault "keys of other alphabets mean nothing" app/display/window.cpp \
+    'if (!label.latin || label.text.empty())' 'if (label.text.empty())' \
+    window_tests 'Keyboard.*'
+fault "the walk leaps after a stall" app/walk/input.h \
+    'now_ = std::max(now_, seconds);' 'static_cast<void>(seconds);' \
+    window_tests 'Input.ATimeThatTheWalkStoodStillMovesNothing'
+fault "a walk that nobody sees goes on" app/walk/render_thread.cpp \
+    'return !resting_ &&' 'return' \
+    window_tests 'RenderThread.TracesNothingWhileItRests'
+fault "the same picture is sampled again and again" app/walk/render_thread.cpp \
+    'still_ = picture == compared_;' 'still_ = false;' \
+    window_tests 'RenderThread.EndsEarlierWhereTwiceTheSamplesChangeNoValue'
+fault "a wrong variable of the driver is not named" app/display/no_display.cpp \
+    '{"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}' '{"VK_ICD_FILENAMES"}' \
+    window_tests 'Offscreen.NoDriverIsToldWithWhatToDo'

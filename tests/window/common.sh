@@ -46,9 +46,10 @@ until_true() {
     done
 }
 
-start_display() {
+start_display() {  # start_display [BITS A PIXEL]
     # -noreset: it would forget its keyboard, and turn clients away for a moment, whenever the last client leaves.
-    Xvfb -noreset -displayfd 3 -screen 0 1600x1000x24 -nolisten tcp 3>display 2>xvfb.log &
+    rm -f display
+    Xvfb -noreset -displayfd 3 -screen 0 "1600x1000x${1:-24}" -nolisten tcp 3>display 2>xvfb.log &
     display_server=$!
     until_true test -s display || fail "Xvfb did not start"
     export DISPLAY=:$(<display)

@@ -65,6 +65,18 @@ TEST(Input, AHeldKeyMovesTenStepsASecondHoweverTheTimeIsCut) {
     }
 }
 
+TEST(Input, ATimeThatTheWalkStoodStillMovesNothing) {
+    Input input;
+    input.press(WalkKey::forward, 0);
+    Camera camera = input.advance(start(), 1);
+    const double before = steps_forward(camera);
+    input.skip(2.9);
+    camera = input.advance(camera, 3);
+    EXPECT_NEAR(steps_forward(camera) - before, 0.1 * walk_presses_per_second, 1e-9);
+    input.skip(2.9);  // seen already
+    EXPECT_NEAR(steps_forward(input.advance(camera, 3.1)) - before, 0.2 * walk_presses_per_second, 1e-9);
+}
+
 TEST(Input, OppositeKeysCancelWhileBothAreDown) {
     Input input;
     input.press(WalkKey::forward, 0);
@@ -111,16 +123,23 @@ TEST(Input, NothingMovesAfterQuit) {
 }
 
 TEST(Keyboard, WalkingGoesByPlaceAndQuitByLabel) {
-    EXPECT_EQ(walk_key(GLFW_KEY_W, "z"), WalkKey::forward) << "AZERTY";
-    EXPECT_EQ(walk_key(GLFW_KEY_A, "q"), WalkKey::left) << "AZERTY: left of S";
-    EXPECT_EQ(walk_key(GLFW_KEY_Q, "a"), std::nullopt) << "AZERTY: the key labelled A does not quit";
-    EXPECT_EQ(walk_key(GLFW_KEY_Q, "q"), WalkKey::quit);
-    EXPECT_EQ(walk_key(GLFW_KEY_X, "q"), WalkKey::quit) << "Dvorak: the key labelled Q";
-    EXPECT_EQ(walk_key(GLFW_KEY_Q, ""), WalkKey::quit) << "no label known";
-    EXPECT_EQ(walk_key(GLFW_KEY_T, "t"), WalkKey::toggle);
-    EXPECT_EQ(walk_key(GLFW_KEY_T, "y"), std::nullopt);
-    EXPECT_EQ(walk_key(GLFW_KEY_ESCAPE, ""), WalkKey::quit);
-    EXPECT_EQ(walk_key(GLFW_KEY_UP, ""), WalkKey::turn_up);
+    EXPECT_EQ(walk_key(GLFW_KEY_W, {"z"}), WalkKey::forward) << "AZERTY";
+    EXPECT_EQ(walk_key(GLFW_KEY_A, {"q"}), WalkKey::left) << "AZERTY: left of S";
+    EXPECT_EQ(walk_key(GLFW_KEY_Q, {"a"}), std::nullopt) << "AZERTY: the key labelled A does not quit";
+    EXPECT_EQ(letter_of(GLFW_KEY_A, {"q"}), 'q') << "AZERTY: with Ctrl it does";
+    EXPECT_EQ(walk_key(GLFW_KEY_Q, {"q"}), WalkKey::quit);
+    EXPECT_EQ(walk_key(GLFW_KEY_Q, {"Q"}), WalkKey::quit);
+    EXPECT_EQ(walk_key(GLFW_KEY_X, {"q"}), WalkKey::quit) << "Dvorak: the key labelled Q";
+    EXPECT_EQ(walk_key(GLFW_KEY_Q, {"'"}), std::nullopt) << "Dvorak: in the place of Q";
+    EXPECT_EQ(walk_key(GLFW_KEY_Q, {""}), WalkKey::quit) << "no label known";
+    EXPECT_EQ(walk_key(GLFW_KEY_T, {"t"}), WalkKey::toggle);
+    EXPECT_EQ(walk_key(GLFW_KEY_T, {"y"}), std::nullopt);
+    EXPECT_EQ(walk_key(GLFW_KEY_Q, {"\u0439", false}), WalkKey::quit) << "Cyrillic: no Latin letter anywhere";
+    EXPECT_EQ(walk_key(GLFW_KEY_Q, {"/", false}), WalkKey::quit) << "Hebrew";
+    EXPECT_EQ(walk_key(GLFW_KEY_T, {"\u03c4", false}), WalkKey::toggle) << "Greek";
+    EXPECT_EQ(walk_key(GLFW_KEY_SLASH, {"q", false}), std::nullopt);
+    EXPECT_EQ(walk_key(GLFW_KEY_ESCAPE, {""}), WalkKey::quit);
+    EXPECT_EQ(walk_key(GLFW_KEY_UP, {""}), WalkKey::turn_up);
 }
 
 }  // namespace

@@ -15,13 +15,26 @@ refused() {
 
 refused "display --capture -render"
 DISPLAY=:77777 refused "display --capture -render"
-VK_DRIVER_FILES=/nonexistent refused "mesa-vulkan-drivers -render" --capture out.png
+VK_DRIVER_FILES=/nonexistent refused "VK_DRIVER_FILES.*/nonexistent unset -render" --capture out.png
+(unset VK_DRIVER_FILES; export VK_ICD_FILENAMES=/missing; refused "VK_ICD_FILENAMES.*/missing unset" --capture out.png)
 LD_PRELOAD=$without_vulkan refused "libvulkan.so.1 mesa-vulkan-drivers -render" --capture out.png
 [[ ! -e out.png ]] || fail "a picture although there is no device"
 
 start_display
-VK_DRIVER_FILES=/nonexistent refused "mesa-vulkan-drivers -render"
+VK_DRIVER_FILES=/nonexistent refused "VK_DRIVER_FILES.*/nonexistent unset"
 LD_PRELOAD=$without_vulkan refused "libvulkan.so.1 mesa-vulkan-drivers -render"
+
+# A display that ends in the middle of the walk.
+start_walk --quiet
+kill "$display_server"
+end_walk 4
+display_server=
+grep -q '^raywalk: error: the display was lost' walk.err || fail "the lost display is not told"
+[[ $(wc -l <walk.err) -le 2 ]] || fail "somebody else writes about the lost display"
+
+# 16 bits a pixel: the driver presents to it, and offers no format.
+start_display 16
+refused "show.*on.this.display -render"
 unset DISPLAY
 
 LD_PRELOAD=$without_vulkan VK_DRIVER_FILES=/nonexistent "$program" "$scene" --size $size --quiet -render out.png ||

@@ -1,5 +1,6 @@
 // Frames drawn into memory by the commands that draw windows: every way from the staging buffer to the picture.
 #include "app/display/presenter.h"
+#include "app/display/no_display.h"
 
 #include <gtest/gtest.h>
 
@@ -141,7 +142,10 @@ TEST(Offscreen, NoDriverIsToldWithWhatToDo) {
         OffscreenPresenter presenter;
         ADD_FAILURE() << "a presenter without a driver";
     } catch (const NoDisplayError& error) {
-        EXPECT_NE(std::string(error.what()).find("mesa-vulkan-drivers"), std::string::npos) << error.what();
+        EXPECT_NE(
+            std::string(error.what()).find("VK_DRIVER_FILES names the only drivers that may be used, '/nonexistent'"),
+            std::string::npos)
+            << error.what();
     }
     old ? setenv("VK_DRIVER_FILES", drivers.c_str(), 1) : unsetenv("VK_DRIVER_FILES");
 }

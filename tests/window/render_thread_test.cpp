@@ -44,6 +44,7 @@ class Bench {
                                               RenderThread::Setup{.opening = opening,
                                                                   .exposure = exposure_,
                                                                   .sample_limit = limit_,
+                                                                  .until_still = until_still,
                                                                   .frame_ready = [this] { note_frame(); }},
                                               view);
     }
@@ -58,7 +59,8 @@ class Bench {
             if (!frame) return false;
             EXPECT_GE(frame->info.camera_id, last) << "a frame of an older view";
             last = frame->info.camera_id;
-            return last == id && frame->info.samples == limit_;
+            if (frame->info.finished) finished_at = frame->info.samples;
+            return last == id && frame->info.finished;
         });
         EXPECT_TRUE(came) << "the last view never got its samples";
         if (!came) return {};
@@ -80,7 +82,15 @@ class Bench {
         return picture;
     }
 
+    // Whether a frame of the view `id` is waiting to be shown.
+    bool has_frame(std::uint64_t id) {
+        const FrameSlot* frame = exchange_.take();
+        return frame != nullptr && frame->info.camera_id == id;
+    }
+
     View opening;
+    bool until_still = false;
+    std::uint32_t finished_at = 0;  // samples of the last finished frame
 
   private:
     void note_frame() {
@@ -108,6 +118,7 @@ TEST(RenderThread, AStandingViewGetsEverySampleOfThePlainRenderer) {
         Bench bench(limit);
         const auto render = bench.start(bench.opening);
         EXPECT_EQ(bench.finished_frame(1), bench.expected(bench.opening)) << limit << " samples";
+        EXPECT_EQ(bench.finished_at, limit);
     }
 }
 
@@ -152,6 +163,35 @@ TEST(RenderThread, AnotherExposureCostsNoSample) {
     EXPECT_EQ(bench.finished_frame(1), brighter);
     render->stop();
     EXPECT_EQ(render->traced_seconds(), traced);
+}
+
+TEST(RenderThread, EndsEarlierWhereTwiceTheSamplesChangeNoValue) {
+    Bench bench(128);
+    bench.until_still = true;
+    const auto render = bench.start(bench.opening);
+    bench.finished_frame(1);
+    EXPECT_EQ(bench.finished_at, 128u) << "edges and highlights still change";
+    View away = bench.opening;
+    away.camera.direction = {0, 1, 0};  // nothing but black
+    away.camera.up = {0, 0, 1};
+    bench.finished_frame(render->show(away, false));
+    EXPECT_EQ(bench.finished_at, 32u) << "as at 16";
+    bench.finished_frame(render->show(bench.opening, false));
+    EXPECT_EQ(bench.finished_at, 128u) << "another view begins anew";
+}
+
+TEST(RenderThread, TracesNothingWhileItRests) {
+    Bench bench(3);
+    const auto render = bench.start(bench.opening);
+    bench.finished_frame(1);
+    render->rest(true);
+    View view = bench.opening;
+    view.camera = walk(view.camera, {.forward = 1});
+    const std::uint64_t id = render->show(view, false);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_FALSE(bench.has_frame(id));
+    render->rest(false);
+    EXPECT_EQ(bench.finished_frame(id), bench.expected(view));
 }
 
 TEST(RenderThread, EndsAtOnceWhileThereIsMuchToDo) {
