@@ -1,6 +1,9 @@
 // The program where something is wrong: its input, its surroundings, its user's patience.
+#include <unistd.h>
+
 #include <chrono>
 #include <csignal>
+#include <sstream>
 #include <thread>
 
 #include "tests/app/command_line_fixture.h"
@@ -205,12 +208,27 @@ TEST_F(CommandLine, TooLittleMemoryEndsWithOneAndAMessage) {
 
 // ---- interruptions
 
-// Starts a render that would take hours and calls `disturb` when the first pass is over or a moment has passed.
+// Processor time that a process has used, seconds; negative when it is gone.
+double processor_seconds(int id) {
+    std::string status = read_file("/proc/" + std::to_string(id) + "/stat");
+    if (status.empty()) return -1;
+    std::istringstream fields(status.substr(status.rfind(')') + 2));
+    std::string skipped;
+    for (int field = 3; field < 14; ++field) fields >> skipped;
+    double user = 0, system = 0;
+    fields >> user >> system;
+    return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+// Starts a render that would take hours and calls `disturb` when it has worked for longer than reading its scene takes:
+// by its own time, as a busy machine may not let it begin for seconds.
 Outcome disturbed(Process process, const std::function<void(int)>& disturb) {
     std::thread disturber;
     process.started = [&](int id) {
         disturber = std::thread([&, id] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(700));
+            constexpr double reading_and_more = RAYWALK_SANITIZED ? 2 : 0.5;
+            for (double used = 0; used >= 0 && used < reading_and_more; used = processor_seconds(id))
+                std::this_thread::sleep_for(std::chrono::milliseconds(20));
             disturb(id);
         });
     };
