@@ -14,6 +14,7 @@
 #include "app/process/interrupts.h"
 #include "app/process/output_files.h"
 #include "app/process/stacks.h"
+#include "app/shipped_scenes.h"
 
 namespace raywalk {
 
@@ -56,7 +57,8 @@ void wait_without_spinning(char** arguments) {
     start_again(arguments);
 }
 
-int run(const Options& options, char** arguments) {
+int run(Options options, char** arguments) {
+    options.scene = scene_file(options.scene);
     if (options.mode == Mode::travel) wait_without_spinning(arguments);
     omp_set_num_threads(options.threads);
     require_writable_outputs(options);
@@ -84,7 +86,7 @@ int run(const std::vector<std::string>& words, char** arguments) {
         print_result(answer->text);
         return exit_done;
     }
-    return run(std::get<Options>(parsed), arguments);
+    return run(std::get<Options>(std::move(parsed)), arguments);
 }
 
 }  // namespace

@@ -7,7 +7,8 @@ inline constexpr const char* help_start =
     R"(raywalk: walk through a ray-traced scene, or render it
 
 usage:
-  raywalk SCENE                 walk through the scene in a window
+  raywalk SCENE                 walk through the scene in a window: a file, or the name of one
+                                that ships, such as cornell_box
   raywalk SCENE -render OUT     render a picture, write it to the file OUT
 
 the walk:
@@ -15,12 +16,12 @@ the walk:
   arrow keys     turn up, down, left, right (hold to go on)
   T              orthographic or perspective projection
   [ ]            darker, brighter
-  Q, Escape      quit
+  Q, Ctrl+Q, Escape  quit
 )";
 
 inline constexpr const char* help_end =
     R"(examples:
-  raywalk scenes/cornell_box.scene
+  raywalk cornell_box
   raywalk scenes/cornell_box.scene -render box.png
   raywalk scenes/cornell_box.scene -render box.exr --size 1920x1080 --spp 64
   raywalk scenes/cornell_box.scene -render left.png --keys '8w 5L'

@@ -253,5 +253,26 @@ TEST_F(CommandLine, CheckReportsEveryMistakeOfSceneMeshAndImage) {
     EXPECT_THAT(outcome.errors, HasSubstr("^"));
 }
 
+TEST_F(CommandLine, ASceneThatShipsIsFoundByItsName) {
+    for (const std::string name : {"cornell_box", "cornell_box.scene"}) {
+        const Outcome outcome = raywalk({name, "-render", "box.png", "--size", "16x12", "--spp", "1"});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        EXPECT_EQ(pixels("box.png").width, 16);
+    }
+    write_file(path("cornell_box"), small_scene);  // what lies here comes first
+    EXPECT_THAT(raywalk({"cornell_box", "--check"}).output, HasSubstr("1 plane, 1 sphere, 1 face"));
+    EXPECT_EQ(raywalk({"./cornell_room", "--check"}).exit_code, 3);
+    EXPECT_EQ(raywalk({"no_such_scene", "--check"}).exit_code, 3);
+}
+
+TEST_F(CommandLine, ASceneThatIsAMeshIsToldWhatToDo) {
+    write_file(path("my chair.OBJ"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Outcome outcome = raywalk({"my chair.OBJ", "-render", "a.png"});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_THAT(outcome.errors, HasSubstr("my chair.OBJ: error: a mesh is no scene"));
+    EXPECT_THAT(outcome.errors, HasSubstr("`file \"my chair.OBJ\"`"));
+    EXPECT_EQ(files(), 2u);
+}
+
 }  // namespace
 }  // namespace raywalk
