@@ -15,6 +15,7 @@ center  -8.0 8.0 17.0
 target  0.4 3.6 0.0
 up      0.0 1.0 0.0
 fovy    40
+anti    8
 
 # A warm key from the left, a faint cool fill from the right behind the camera.
 Light
