@@ -59,8 +59,9 @@ HWY_INLINE bool spawns(const HitLanes& hit, const MaterialLanes& m) {
 
 // Queues the mirrored and refracted rays of a group's hits. Not inlined: its registers would be spilled in every loop
 // over hits, where few reflect (cornell_box 1.2 to 1.3 times as fast without).
-HWY_NOINLINE void spawn(const HitLanes& hit, const SurfaceLanes& s, const MaterialLanes& m, const Real& length,
-                        const Real& weight, const Real& medium, const Int& pixel, RayQueue& next, RayCounts& counts) {
+inline HWY_NOINLINE void spawn(const HitLanes& hit, const SurfaceLanes& s, const MaterialLanes& m, const Real& length,
+                               const Real& weight, const Real& medium, const Int& pixel, RayQueue& next,
+                               RayCounts& counts) {
     const Real zero(0.0f);
     const Mask reflecting = hit.active & (m.reflection > zero), transmitting = hit.active & (m.transmission > zero);
     if (any(reflecting)) {
