@@ -52,8 +52,9 @@ std::string picture_line(const Options& options, const Scene& scene) {
 int check_command(const Options& options) {
     std::vector<Diagnostic> warnings;
     const Scene scene = read_scene(options.scene, options.limits, warnings);
-    const SceneFiles<TriangleMesh> meshes = read_meshes(scene, options.limits);
-    const SceneFiles<Image> images = read_images(scene, options.limits);
+    MemoryBudget memory(options.limits);
+    const SceneFiles<TriangleMesh> meshes = read_meshes(scene, options.limits, memory);
+    const SceneFiles<Image> images = read_images(scene, options.limits, memory);
     for (const auto* found : {&meshes.warnings, &images.warnings})
         warnings.insert(warnings.end(), found->begin(), found->end());
     if (options.verbosity != Verbosity::quiet) print_diagnostics(warnings);

@@ -1,5 +1,6 @@
 // raywalk: walk through a ray-traced scene, or render it.
 #include <fcntl.h>
+#include <malloc.h>
 #include <omp.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -96,6 +97,7 @@ int run(const std::vector<std::string>& words, char** arguments) {
 int main(int count, char** arguments) {
     using namespace raywalk;
     prctl(PR_SET_NAME, "raywalk");
+    mallopt(M_MMAP_THRESHOLD, 16 << 20);  // fixed: what is larger goes back to the system when it is freed
     keep_standard_streams();
     catch_interrupts();
     std::set_terminate(end_by_terminate);

@@ -246,13 +246,13 @@ CommandLine::CommandLine() {
 
     group("limits, against hostile scenes");
     value("--allow-path", "DIR",
-          "a folder that scenes may name files in, beside the parent of their own;\n"
-          "may be given several times",
+          "a folder that scenes may name files in, beside their own and those of\n"
+          "their project; may be given several times",
           options.limits.allowed_folders, [](const std::string& name, std::string_view) { return name; })
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     for (const LimitOption& limit : limit_options)
         value(std::string(limit.name), "N", std::string(limit.meaning), options.limits.*limit.value,
-              whole_number<std::uint64_t>(1, std::uint64_t{1} << 53));
+              whole_number<std::uint64_t>(1, limit.most));
 }
 
 void CommandLine::value_forgotten(std::string_view option) const {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "tracer/ground/file_bytes.h"
 
@@ -77,25 +78,43 @@ void print_labelled(std::string_view label, std::string_view colour, std::string
 
 constexpr std::string_view red = "1;31", magenta = "1;35";
 
-// The line that a diagnostic points to, unless it has it already.
-Diagnostic with_line(Diagnostic diagnostic) {
-    constexpr std::uint64_t largest_file = 256 << 20;
-    if (!diagnostic.source_line.empty() || diagnostic.where.line == 0) return diagnostic;
-    try {
-        const FileBytes bytes = read_file_bytes(diagnostic.where.file, largest_file);
-        std::string_view rest = bytes.text();
-        for (std::size_t number = 1; number < diagnostic.where.line; ++number) {
-            const std::size_t end = rest.find('\n');
-            if (end == std::string_view::npos) return diagnostic;
-            rest.remove_prefix(end + 1);
-        }
-        std::string_view line = rest.substr(0, rest.find('\n'));
+// Shows the lines that diagnostics point to; a file that many point to is read once.
+class Lines {
+  public:
+    // The diagnostic with its line, unless it has it already, must not show it, or the file changed meanwhile.
+    Diagnostic added_to(Diagnostic diagnostic) {
+        if (!diagnostic.source_line.empty() || diagnostic.where.line == 0 || !diagnostic.quotable) return diagnostic;
+        if (diagnostic.where.file != file_) read(diagnostic.where.file);
+        if (diagnostic.where.line > starts_.size()) return diagnostic;
+        std::string_view line = bytes_->text().substr(starts_[diagnostic.where.line - 1]);
+        line = line.substr(0, line.find('\n'));
         if (line.ends_with('\r')) line.remove_suffix(1);
         quote_line(diagnostic, line);
-    } catch (const FileProblem&) {  // it changed meanwhile
+        return diagnostic;
     }
-    return diagnostic;
-}
+
+  private:
+    void read(const std::string& file) {
+        constexpr std::uint64_t largest_file = 256 << 20;
+        file_ = file;
+        starts_.clear();
+        try {
+            bytes_.emplace(read_file_bytes(open_file(file), largest_file));
+        } catch (const FileProblem&) {
+            return;
+        }
+        const std::string_view text = bytes_->text();
+        for (std::size_t at = 0; at != std::string_view::npos;) {
+            starts_.push_back(at);
+            at = text.find('\n', at);
+            if (at != std::string_view::npos) ++at;
+        }
+    }
+
+    std::string file_;
+    std::optional<FileBytes> bytes_;
+    std::vector<std::size_t> starts_;  // of lines
+};
 
 }  // namespace
 
@@ -114,8 +133,9 @@ void show_if_ready(std::string_view text) { write_error_within(std::chrono::mill
 
 void print_diagnostics(std::span<const Diagnostic> diagnostics) {
     std::string text;
+    Lines lines;
     for (const Diagnostic& diagnostic : diagnostics) {
-        std::string one = to_string(with_line(diagnostic));
+        std::string one = to_string(lines.added_to(diagnostic));
         const bool is_error = diagnostic.severity == Severity::error;
         const std::string_view label = is_error ? ": error: " : ": warning: ";
         if (const std::size_t at = one.find(label, printable(diagnostic.where.file).size()); at != std::string::npos)

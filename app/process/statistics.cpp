@@ -69,8 +69,8 @@ json statistics_of(const Options& options, const LoadedScene& loaded, const Rend
 }
 
 void write_statistics(const std::filesystem::path& file, const json& statistics) {
-    // Names of files need not be UTF-8, JSON must be.
-    const std::string text = statistics.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    // Names of files need not be UTF-8, JSON must be; in ASCII none of them steers a terminal.
+    const std::string text = statistics.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
     if (file == "-")
         print_result(text);
     else

@@ -206,6 +206,23 @@ TEST_F(CommandLine, TooLittleMemoryEndsWithOneAndAMessage) {
 #endif
 }
 
+TEST_F(CommandLine, NamesInStatisticsSteerNoTerminal) {
+    const std::string name =
+        "a\xC2\x9B"
+        "2Jb.scene";  // a C1 control character
+    fs::copy_file(path("room.scene"), path(name));
+    const Outcome outcome = raywalk({name, "-render", "a.png", "-q", "--stats", "-"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_EQ(outcome.output.find('\xC2'), std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(outcome.output)["scene"]["file"], name);
+}
+
+TEST_F(CommandLine, NoLimitCanBeRaisedBeyondWhatNumbersHold) {
+    const Outcome outcome = raywalk({"room.scene", "-render", "a.png", "--max-samples", "9007199254740992"});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.errors, HasSubstr("--max-samples: expected a whole number from 1 to 16777216"));
+}
+
 // ---- interruptions
 
 // Processor time that a process has used, seconds; negative when it is gone.

@@ -117,8 +117,10 @@ TEST(Options, ADoubleDashEndsTheOptions) { EXPECT_EQ(parsed({"--", "-a.scene"}).
 
 TEST(Options, EveryLimitCanBeRaised) {
     for (const LimitOption& option : limit_options) {
-        const Options options = parsed({"a.scene", std::string(option.name), "123456789"});
-        EXPECT_EQ(options.limits.*option.value, 123456789u) << option.name;
+        const Options options = parsed({"a.scene", std::string(option.name), std::to_string(option.most)});
+        EXPECT_EQ(options.limits.*option.value, option.most) << option.name;
+        EXPECT_THAT(error_of({"a.scene", std::string(option.name), std::to_string(option.most + 1)}),
+                    HasSubstr("a whole number from 1 to"));
     }
 }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "app/process/console.h"
-#include "app/process/cores.h"
 
 namespace raywalk {
 namespace {
@@ -46,15 +45,6 @@ TEST(Console, CountsHaveSeparatorsAndTheRightNumber) {
     EXPECT_EQ(count_text(1, "ray"), "1 ray");
     EXPECT_EQ(count_text(999, "ray"), "999 rays");
     EXPECT_EQ(count_text(1234567, "mesh", "meshes"), "1,234,567 meshes");
-}
-
-TEST(Cores, AQuotaOfTheControlGroupIsRoundedUp) {
-    EXPECT_EQ(cores_of_quota("max 100000"), 0);
-    EXPECT_EQ(cores_of_quota("200000 100000"), 2);
-    EXPECT_EQ(cores_of_quota("150000 100000"), 2);
-    EXPECT_EQ(cores_of_quota("1000 100000"), 1);
-    for (const char* text : {"", "x", "1 ", "-5 100000", "100000 0"}) EXPECT_EQ(cores_of_quota(text), 0) << text;
-    EXPECT_GE(usable_cores(), 1);
 }
 
 }  // namespace

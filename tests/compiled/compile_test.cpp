@@ -65,7 +65,8 @@ TEST(Compile, AMeshNamedTwiceIsReadOnce) {
     write_file(folder.path() / "t.obj", tetrahedron);
     Scene scene;
     scene.meshes = {mesh_of(folder.path() / "t.obj", false), mesh_of(folder.path() / "t.obj", true)};
-    EXPECT_EQ(read_meshes(scene, {}).files.size(), 1u);
+    MemoryBudget memory({});
+    EXPECT_EQ(read_meshes(scene, {}, memory).files.size(), 1u);
 }
 
 TEST(Compile, ShapesThatLookTheSameShareASurface) {

@@ -215,3 +215,26 @@ fault "the same picture is sampled again and again" app/walk/render_thread.cpp \
 fault "a wrong variable of the driver is not named" app/display/no_display.cpp \
     '{"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}' '{"VK_ICD_FILENAMES"}' \
     window_tests 'Offscreen.NoDriverIsToldWithWhatToDo'
+
+# What a scene may take and reach.
+fault "memory of a mesh counts once" tracer/files/memory_budget.cpp \
+    'used_.fetch_add(bytes)' 'used_.load()' \
+    files_tests 'Budgets.MemoryOfAMeshThatIsNamedOftenCountsEachTime'
+fault "time for reading never ends" tracer/files/load.cpp \
+    'if (watch.seconds() <= static_cast<double>(limits.seconds)) return;' 'return;' \
+    files_tests 'Budgets.TimeForAllFilesEnds'
+fault "every parent is a project" tracer/files/scene_folders.cpp \
+    'if (std::ranges::find(names, folder.filename()) == names.end()) return false;' 'return true;' \
+    files_tests 'SceneFolders.*'
+fault "a home is a project" tracer/files/scene_folders.cpp \
+    '&& !is_home(parent);' ';' \
+    files_tests 'SceneFolders.TheParentCountsWhereItLooksLikeAProject'
+fault "links are followed below a folder" tracer/ground/open_beneath.cpp \
+    'RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS | RESOLVE_NO_MAGICLINKS' '0' \
+    ground_tests 'OpenBeneath.NoLinkIsFollowedOnTheWay'
+fault "lines of other people's files are shown" tracer/files/load.cpp \
+    'diagnostic.source_line.clear();' '' \
+    files_tests 'SceneFolders.LinesOfFilesElsewhereAreNotShown'
+fault "the quota of version 1 is not read" tracer/ground/control_groups.cpp \
+    'quota = content_of(folder / "cpu.cfs_quota_us");' '' \
+    ground_tests 'ControlGroups.VersionOneIsReadAsVersionTwo'

@@ -269,13 +269,14 @@ CompiledScene compile(const Scene& given, const CompileOptions& options, const L
     std::optional<Scene> moved;
     if (origin != glm::dvec3(0)) moved = moved_to(origin, given);
     const Scene& scene = moved ? *moved : given;
+    MemoryBudget memory(limits);
     // Images are decoded while meshes are read and the tree is built.
-    auto images_to_come = std::async(std::launch::async, [&] { return read_images(scene, limits); });
+    auto images_to_come = std::async(std::launch::async, [&] { return read_images(scene, limits, memory); });
     CompiledScene compiled;
     compiled.origin = origin;
     compile_lights(scene, limits, compiled);
 
-    SceneFiles<TriangleMesh> meshes = read_meshes(scene, limits);
+    SceneFiles<TriangleMesh> meshes = read_meshes(scene, limits, memory);
     warnings.insert(warnings.end(), meshes.warnings.begin(), meshes.warnings.end());
     BuildStatistics build;
     if (meshes.errors.empty()) {

@@ -19,6 +19,7 @@
 #include <thread>
 #include <utility>
 
+#include "tracer/ground/descriptor.h"
 #include "tracer/ground/error.h"
 
 namespace raywalk {
@@ -33,21 +34,6 @@ constexpr rlim_t small_stack = 1 << 20;
 // All that a helper knows of the world: one thread for whoever asks, one arena of malloc.
 constexpr std::array environment = {"LC_ALL=C", "OPENIMAGEIO_THREADS=1", "OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1",
                                     "MALLOC_ARENA_MAX=1"};
-
-class Descriptor {
-  public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (fd_ >= 0) close(fd_);
-    }
-    [[nodiscard]] int get() const { return fd_; }
-    int release() { return std::exchange(fd_, -1); }
-
-  private:
-    int fd_;
-};
 
 // Where the program lies, and whose it is. The link in /proc is the kernel's word; without it there is none to trust.
 struct Home {

@@ -1,10 +1,14 @@
 #include "tracer/files/load.h"
 
+#include <omp.h>
+
 #include <atomic>
 #include <future>
 #include <thread>
 #include <utility>
 
+#include "tracer/files/scene_folders.h"
+#include "tracer/ground/file_bytes.h"
 #include "tracer/ground/stopwatch.h"
 
 namespace raywalk {
@@ -23,9 +27,47 @@ std::map<std::filesystem::path, SourceLocation> image_files(const Scene& scene) 
     return files;
 }
 
-// `pixels` of all images so far, of which the latest has `own`. Throws where that breaks the budget.
-void require_budget(std::uint64_t pixels, std::uint64_t own, const Limits& limits, const SourceLocation& where) {
-    if (pixels <= limits.all_image_pixels || pixels - own > limits.all_image_pixels) return;
+// Files of a scene as it may open them; one that was not read from a file may open all.
+FileOpener opener_for(const Scene& scene, const Limits& limits) {
+    if (scene.file.empty()) return open_file;
+    return
+        [folders = SceneFolders(scene.file, limits)](const std::filesystem::path& file) { return folders.open(file); };
+}
+
+// Lines of files that lie elsewhere than the scene are not shown to whoever opens it.
+void withhold_foreign_lines(std::vector<Diagnostic>& diagnostics, const Scene& scene, const SceneFolders& folders) {
+    for (Diagnostic& diagnostic : diagnostics) {
+        if (diagnostic.where.file == scene.file || folders.are_own(diagnostic.where.file)) continue;
+        diagnostic.source_line.clear();
+        diagnostic.quotable = false;
+    }
+}
+
+// Bytes; 0 where the file is gone.
+std::uint64_t size_of(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    return error ? 0 : size;
+}
+
+// Throws where reading all files takes longer than it may.
+void require_time(const Stopwatch& watch, const Limits& limits, const SourceLocation& where) {
+    if (watch.seconds() <= static_cast<double>(limits.seconds)) return;
+    throw InputError(
+        error_at(where, "reading this scene's files takes more than " + std::to_string(limits.seconds) + " seconds",
+                 how_to_raise(limits, &Limits::seconds)));
+}
+
+// Throws where so many files are too many.
+void require_count(std::uint64_t count, const Limits& limits, const SourceLocation& where) {
+    if (count <= limits.files) return;
+    throw InputError(error_at(where, "a scene may name " + std::to_string(limits.files) + " files of a kind",
+                              how_to_raise(limits, &Limits::files)));
+}
+
+// Throws where the images so far have too many pixels.
+void require_pixels(std::uint64_t pixels, const Limits& limits, const SourceLocation& where) {
+    if (pixels <= limits.all_image_pixels) return;
     throw InputError(error_at(where, "with this image the scene's images have " + std::to_string(pixels) + " pixels",
                               how_to_raise(limits, &Limits::all_image_pixels)));
 }
@@ -41,40 +83,76 @@ std::vector<const Texture*> textures_of(const Scene& scene) {
     return textures;
 }
 
-SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits) {
+SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits, MemoryBudget& memory) {
     const Stopwatch watch;
+    const FileOpener open = opener_for(scene, limits);
     SceneFiles<TriangleMesh> read;
     std::uint64_t triangles = scene.faces.size();
-    for (const Mesh& mesh : scene.meshes) {
-        if (!read.files.contains(mesh.file)) {
-            try {
-                TriangleMesh triangle_mesh = read_obj(mesh.file, limits, read.warnings, mesh.where);
-                if (const std::string problem = placement_problem(triangle_mesh); !problem.empty())
-                    throw InputError(error_at(
-                        mesh.where, "mesh " + quoted_name(mesh.file.string()) + " cannot be placed: " + problem,
-                        "a mesh needs a face and two different vertices"));
-                read.files.emplace(mesh.file, std::move(triangle_mesh));
-            } catch (const InputError& error) {
-                append(read.errors, error.diagnostics());
-                read.files.emplace(mesh.file, TriangleMesh{});  // not read, and complained about, a second time
-                continue;
+    try {
+        for (const Mesh& mesh : scene.meshes) {
+            if (!read.files.contains(mesh.file)) {
+                require_count(read.files.size() + 1, limits, mesh.where);
+                require_time(watch, limits, mesh.where);
+                try {
+                    TriangleMesh triangle_mesh = read_obj(mesh.file, limits, read.warnings, mesh.where, open);
+                    if (const std::string problem = placement_problem(triangle_mesh); !problem.empty())
+                        throw InputError(error_at(
+                            mesh.where, "mesh " + quoted_name(mesh.file.string()) + " cannot be placed: " + problem,
+                            "a mesh needs a face and two different vertices"));
+                    read.files.emplace(mesh.file, std::move(triangle_mesh));
+                    memory.allow_for_file(size_of(mesh.file));
+                } catch (const InputError& error) {
+                    append(read.errors, error.diagnostics());
+                    if (read.errors.size() >= limits.errors) break;
+                    read.files.emplace(mesh.file, TriangleMesh{});  // not read, and complained about, a second time
+                    continue;
+                }
             }
+            const std::uint64_t own = read.files.at(mesh.file).faces.size();
+            triangles += own;
+            if (triangles > limits.triangles)
+                throw InputError(error_at(mesh.where,
+                                          "with this mesh the scene has " + std::to_string(triangles) +
+                                              " triangles, more than the limit of " + std::to_string(limits.triangles),
+                                          how_to_raise(limits, &Limits::triangles)));
+            memory.take(own * (memory_of_a_triangle + (mesh.smooth ? memory_of_normals : 0)), mesh.where, "this mesh");
         }
-        triangles += read.files.at(mesh.file).faces.size();
-        if (triangles > limits.triangles) {
-            read.errors.push_back(error_at(mesh.where,
-                                           "with this mesh the scene has " + std::to_string(triangles) +
-                                               " triangles, more than the limit of " + std::to_string(limits.triangles),
-                                           how_to_raise(limits, &Limits::triangles)));
-            break;
-        }
+    } catch (const InputError& error) {
+        append(read.errors, error.diagnostics());
+    }
+    if (!scene.file.empty()) {
+        const SceneFolders folders(scene.file, limits);
+        withhold_foreign_lines(read.warnings, scene, folders);
+        withhold_foreign_lines(read.errors, scene, folders);
     }
     read.seconds = watch.seconds();
     return read;
 }
 
-SceneFiles<Image> read_images(const Scene& scene, const Limits& limits) {
+namespace {
+
+// What an image is worth remarking on.
+void note_image(const Image& image, const std::filesystem::path& file, const SourceLocation& where,
+                std::vector<Diagnostic>& warnings) {
+    const std::string name = "image " + quoted_name(file.string());
+    if (image.width != image.height)
+        warnings.push_back(warning_at(where,
+                                      name + " is " + std::to_string(image.width) + " x " +
+                                          std::to_string(image.height) + " pixels and is stretched over a square",
+                                      "a square image keeps its shape"));
+    if (image.clipped > 0)
+        warnings.push_back(warning_at(where,
+                                      name + " has " + std::to_string(image.clipped) +
+                                          (image.clipped == 1 ? " pixel" : " pixels") +
+                                          " brighter than 1, which a texture shows as 1",
+                                      "scale its values to 0..1, and make up for it with brighter lights"));
+}
+
+}  // namespace
+
+SceneFiles<Image> read_images(const Scene& scene, const Limits& limits, MemoryBudget& memory) {
     const Stopwatch watch;
+    const FileOpener open = opener_for(scene, limits);
     SceneFiles<Image> read;
     const auto places = image_files(scene);
     const std::vector<std::pair<std::filesystem::path, SourceLocation>> wanted(places.begin(), places.end());
@@ -83,22 +161,40 @@ SceneFiles<Image> read_images(const Scene& scene, const Limits& limits) {
     std::vector<std::promise<Image>> promises(wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) images[i] = promises[i].get_future();
     std::atomic<std::size_t> next = 0;
-    std::atomic<std::uint64_t> pixels = 0;
+    std::atomic<std::uint64_t> pixels = 0, failures = 0;
+    std::atomic<bool> spent = false;  // a budget of all images: no more is read, which is said once
+    const auto read_one = [&](std::size_t i) {
+        const auto& [file, where] = wanted[i];
+        if (spent) return Image{};
+        try {
+            require_count(i + 1, limits, where);
+            require_time(watch, limits, where);
+        } catch (const InputError&) {
+            if (spent.exchange(true)) return Image{};
+            throw;
+        }
+        Image image = read_image(file, limits, where, open);
+        memory.allow_for_file(size_of(file));
+        try {
+            require_pixels(pixels += image.texels.size(), limits, where);
+            memory.take(image.texels.size() * memory_of_a_texel, where, "this image");
+        } catch (const InputError&) {
+            if (spent.exchange(true)) return Image{};
+            throw;
+        }
+        return image;
+    };
     const auto work = [&] {
         for (std::size_t i = next++; i < wanted.size(); i = next++) try {
-                Image image;  // none is read where the budget is spent, and that one was too many is said once
-                if (pixels <= limits.all_image_pixels) {
-                    image = read_image(wanted[i].first, limits, wanted[i].second);
-                    require_budget(pixels += image.texels.size(), image.texels.size(), limits, wanted[i].second);
-                }
-                promises[i].set_value(std::move(image));
+                promises[i].set_value(failures < limits.errors ? read_one(i) : Image{});
             } catch (...) {
+                ++failures;
                 promises[i].set_exception(std::current_exception());
             }
     };
     {
-        std::vector<std::jthread> helpers;
-        const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+        std::vector<std::jthread> helpers;  // each runs one program at a time
+        const auto cores = static_cast<std::size_t>(omp_get_max_threads());
         for (std::size_t i = 1; i < std::min(wanted.size(), cores); ++i) helpers.emplace_back(work);
         work();
     }
@@ -107,21 +203,10 @@ SceneFiles<Image> read_images(const Scene& scene, const Limits& limits) {
         const auto& [file, where] = wanted[i];
         try {
             Image image = images[i].get();
-            if (image.width != image.height)
-                read.warnings.push_back(
-                    warning_at(where,
-                               "image " + quoted_name(file.string()) + " is " + std::to_string(image.width) + " x " +
-                                   std::to_string(image.height) + " pixels and is stretched over a square",
-                               "a square image keeps its shape"));
-            if (image.clipped > 0)
-                read.warnings.push_back(warning_at(
-                    where,
-                    "image " + quoted_name(file.string()) + " has " + std::to_string(image.clipped) +
-                        (image.clipped == 1 ? " pixel" : " pixels") + " brighter than 1, which a texture shows as 1",
-                    "scale its values to 0..1, and make up for it with brighter lights"));
+            note_image(image, file, where, read.warnings);
             read.files.emplace(file, std::move(image));
         } catch (const InputError& error) {
-            append(read.errors, error.diagnostics());
+            if (read.errors.size() < limits.errors) append(read.errors, error.diagnostics());
         }
     }
     read.seconds = watch.seconds();

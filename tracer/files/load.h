@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tracer/files/image/image.h"
+#include "tracer/files/memory_budget.h"
 #include "tracer/files/mesh/obj_reader.h"
 #include "tracer/scene/limits.h"
 #include "tracer/scene/scene.h"
@@ -21,9 +22,10 @@ struct SceneFiles {
 };
 
 // Meshes are read one after the other, each by all threads, and can be placed; images at the same time as each other.
-// Never throw InputError: a scene with several wrong files hears of all of them.
-SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits);
-SceneFiles<Image> read_images(const Scene& scene, const Limits& limits);
+// Never throw InputError: a scene with several wrong files hears of all of them, up to limits.errors. What they and the
+// tree over them will take is counted in `memory`.
+SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits, MemoryBudget& memory);
+SceneFiles<Image> read_images(const Scene& scene, const Limits& limits, MemoryBudget& memory);
 
 // Every texture of the scene, in the order planes, spheres, faces, meshes.
 std::vector<const Texture*> textures_of(const Scene& scene);

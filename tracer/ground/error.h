@@ -30,6 +30,7 @@ struct Diagnostic {
     std::string expected = {};  // "did you mean 'center'?" or what would be right; may be empty
     std::string source_line = {};
     std::size_t skipped = 0;  // bytes of the line left out before source_line, when the line is long
+    bool quotable = true;     // false: the line is not to be shown, nor looked up
     friend bool operator==(const Diagnostic&, const Diagnostic&) = default;
 };
 

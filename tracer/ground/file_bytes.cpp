@@ -18,21 +18,6 @@ namespace {
 
 constexpr std::size_t piece = std::size_t{4} << 20;  // bytes that one thread reads at a time
 
-// A file descriptor that closes itself.
-class Descriptor {
-  public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (fd_ >= 0) close(fd_);
-    }
-    [[nodiscard]] int get() const { return fd_; }
-
-  private:
-    int fd_;
-};
-
 std::string reason(int error) { return std::generic_category().message(error); }
 
 // What kind of thing `mode` says it is, when it is no regular file.
@@ -92,12 +77,7 @@ FileBytes::FileBytes(std::size_t size) : data_(new char[size + padding]), size_(
 
 namespace {
 
-FileBytes read_bytes(const std::filesystem::path& file, std::uint64_t most_bytes, bool text) {
-    // Non-blocking: opening a pipe must not wait for a writer.
-    const Descriptor fd(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
-    if (fd.get() < 0 && (errno == EMFILE || errno == ENFILE || errno == ENOMEM))  // not the file's fault
-        throw WorkError("cannot open " + quoted_name(file.string()) + ": " + reason(errno));
-    if (fd.get() < 0) throw FileProblem("cannot be opened: " + reason(errno));
+FileBytes read_bytes(const Descriptor& fd, std::uint64_t most_bytes, bool text) {
     struct stat before {};
     if (fstat(fd.get(), &before) != 0) throw FileProblem("cannot be examined: " + reason(errno));
     if (std::string kind = kind_problem(before.st_mode); !kind.empty()) throw FileProblem(kind);
@@ -135,11 +115,24 @@ FileBytes read_bytes(const std::filesystem::path& file, std::uint64_t most_bytes
 
 }  // namespace
 
-FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+FileProblem unopened(const std::filesystem::path& file, int error) {
+    if (error == EMFILE || error == ENFILE || error == ENOMEM)  // not the file's fault
+        fail_with("cannot open " + quoted_name(file.string()), error);
+    return FileProblem("cannot be opened: " + reason(error));
+}
+
+Descriptor open_file(const std::filesystem::path& file) {
+    // Non-blocking: opening a pipe must not wait for a writer.
+    Descriptor opened(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (!opened.valid()) throw unopened(file, errno);
+    return opened;
+}
+
+FileBytes read_file_bytes(const Descriptor& file, std::uint64_t most_bytes) {
     return read_bytes(file, most_bytes, false);
 }
 
-FileBytes read_text_bytes(const std::filesystem::path& file, std::uint64_t most_bytes) {
+FileBytes read_text_bytes(const Descriptor& file, std::uint64_t most_bytes) {
     return read_bytes(file, most_bytes, true);
 }
 

@@ -4,10 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "tracer/ground/descriptor.h"
 
 namespace raywalk {
 
@@ -36,12 +39,20 @@ class FileProblem : public std::runtime_error {
     bool too_large;  // the budget was the reason
 };
 
+// The problem of a file that could not be opened, by its errno. Throws WorkError where it is none of the file's.
+FileProblem unopened(const std::filesystem::path& file, int error);
+
+// Opens a file for reading: whatever can be opened, without waiting. Throws FileProblem.
+Descriptor open_file(const std::filesystem::path& file);
+// The same where rights are to be checked.
+using FileOpener = std::function<Descriptor(const std::filesystem::path&)>;
+
 // Reads a regular file of at most `most_bytes`. Throws FileProblem, also for a large one that is mostly holes. Large
 // files are read by several threads.
-FileBytes read_file_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
+FileBytes read_file_bytes(const Descriptor& file, std::uint64_t most_bytes);
 
 // As above, a file of text: a large one with any hole is refused unread.
-FileBytes read_text_bytes(const std::filesystem::path& file, std::uint64_t most_bytes);
+FileBytes read_text_bytes(const Descriptor& file, std::uint64_t most_bytes);
 
 // What would keep `file` from being read (it is missing, a folder, a device, not readable); empty when nothing would.
 std::string file_problem(const std::filesystem::path& file);

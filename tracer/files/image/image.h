@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "tracer/ground/error.h"
+#include "tracer/ground/file_bytes.h"
 #include "tracer/scene/image.h"
 #include "tracer/scene/limits.h"
 
@@ -14,7 +15,8 @@ namespace raywalk {
 
 // Reads PNG, JPEG, TIFF, EXR or HDR (told by content, nothing else is tried). Throws InputError placed at `where`, also
 // when a picture breaks its decoder, or takes too much memory or time.
-Image read_image(const std::filesystem::path& file, const Limits& limits, const SourceLocation& where);
+Image read_image(const std::filesystem::path& file, const Limits& limits, const SourceLocation& where,
+                 const FileOpener& open = open_file);
 // The same for a file already in memory; `file` names it in messages.
 Image decode_image(std::string_view bytes, const std::filesystem::path& file, const Limits& limits,
                    const SourceLocation& where);

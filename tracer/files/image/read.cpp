@@ -44,17 +44,20 @@ InputError refusal(const fs::path& file, const SourceLocation& where, const std:
 
 // What decoding may cost, for a picture of at most so many pixels. Decoders hold the file; the rest of the memory is
 // what a process of so many libraries needs itself.
-ImageBudget budget_for(std::uint64_t pixels, std::uint64_t file_bytes) {
+ImageBudget budget_for(std::uint64_t pixels, std::uint64_t file_bytes, const Limits& limits) {
     return {.pixels = pixels,
             .memory_bytes = (80ull << 20) + 2 * file_bytes,
             .output_bytes = sizeof(ImageReply) + 4 * pixels + 4096,
-            .seconds = 6 + file_bytes / (16 << 20)};
+            .seconds = limits.image_seconds};
 }
 
 ImageResult decode(ImageFormat format, std::string_view bytes, const fs::path& file, const SourceLocation& where,
-                   std::uint64_t most_pixels) {
-    ImageResult result = decode_in_process(format, bytes, budget_for(most_pixels, bytes.size()));
-    if (!result.end.empty()) throw refusal(file, where, "cannot be read: " + result.end, other_image);
+                   std::uint64_t most_pixels, const Limits& limits) {
+    ImageResult result = decode_in_process(format, bytes, budget_for(most_pixels, bytes.size(), limits));
+    if (!result.end.empty())
+        throw refusal(file, where, "cannot be read: " + result.end,
+                      result.end.starts_with("it takes too much time") ? how_to_raise(limits, &Limits::image_seconds)
+                                                                       : other_image);
     return result;
 }
 
@@ -76,9 +79,9 @@ Image texels_of(const ImageResult& result, const fs::path& file, const SourceLoc
 
 Image decode_image(std::string_view bytes, const fs::path& file, const Limits& limits, const SourceLocation& where) {
     const auto format = format_of(bytes);
-    if (!format) throw refusal(file, where, "is none that a scene may show", readable_formats);
+    if (!format) throw refusal(file, where, "is not of a supported format", readable_formats);
     const std::uint64_t plausible = small_image + limits.image_pixels_per_byte * bytes.size();
-    const ImageResult result = decode(*format, bytes, file, where, std::min(plausible, limits.image_pixels));
+    const ImageResult result = decode(*format, bytes, file, where, std::min(plausible, limits.image_pixels), limits);
     const ImageReply& reply = result.reply;
     if (reply.status == ImageReply::failed)
         throw refusal(file, where, "cannot be read: " + printable(result.body()), other_image);
@@ -94,9 +97,9 @@ Image decode_image(std::string_view bytes, const fs::path& file, const Limits& l
     return texels_of(result, file, where);
 }
 
-Image read_image(const fs::path& file, const Limits& limits, const SourceLocation& where) {
+Image read_image(const fs::path& file, const Limits& limits, const SourceLocation& where, const FileOpener& open) {
     try {
-        return decode_image(read_file_bytes(file, limits.image_bytes).text(), file, limits, where);
+        return decode_image(read_file_bytes(open(file), limits.image_bytes).text(), file, limits, where);
     } catch (const FileProblem& problem) {
         throw refusal(file, where, problem.what(),
                       problem.too_large ? how_to_raise(limits, &Limits::image_bytes) : readable_formats);

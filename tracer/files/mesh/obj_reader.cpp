@@ -390,9 +390,9 @@ TriangleMesh parse_obj(std::string_view text, const std::filesystem::path& file,
 }
 
 TriangleMesh read_obj(const std::filesystem::path& file, const Limits& limits, std::vector<Diagnostic>& warnings,
-                      const SourceLocation& where) {
+                      const SourceLocation& where, const FileOpener& open) {
     try {
-        FileBytes bytes = read_text_bytes(file, limits.mesh_bytes);
+        FileBytes bytes = read_text_bytes(open(file), limits.mesh_bytes);
         return mesh_of(bytes, file, limits, warnings);
     } catch (const FileProblem& problem) {
         const SourceLocation place = where.file.empty() ? SourceLocation{file.string()} : where;

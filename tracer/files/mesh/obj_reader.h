@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tracer/ground/error.h"
+#include "tracer/ground/file_bytes.h"
 #include "tracer/scene/limits.h"
 #include "tracer/scene/triangle_mesh.h"
 
@@ -20,7 +21,7 @@ namespace raywalk {
 // cannot be read. Convex polygons become fans from their first corner. Vertices that no face names are left out. Parsed
 // in pieces by all threads; the result is the same for any number of them.
 TriangleMesh read_obj(const std::filesystem::path& file, const Limits& limits, std::vector<Diagnostic>& warnings,
-                      const SourceLocation& where = {});
+                      const SourceLocation& where = {}, const FileOpener& open = open_file);
 TriangleMesh parse_obj(std::string_view text, const std::filesystem::path& file, const Limits& limits,
                        std::vector<Diagnostic>& warnings);
 

@@ -399,7 +399,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file, cons
 
 Scene read_scene(const std::filesystem::path& file, const Limits& limits, std::vector<Diagnostic>& warnings) {
     try {
-        const FileBytes bytes = read_text_bytes(file, limits.scene_bytes);
+        const FileBytes bytes = read_text_bytes(open_file(file), limits.scene_bytes);
         return parse_scene(bytes.text(), file, limits, warnings);
     } catch (const FileProblem& problem) {
         const std::string advice = problem.too_large ? how_to_raise(limits, &Limits::scene_bytes)

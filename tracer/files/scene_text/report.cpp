@@ -46,16 +46,7 @@ void SceneReport::finish(std::vector<Diagnostic>& warnings) {
 }
 
 NamedFiles::NamedFiles(const std::filesystem::path& scene, const Limits& limits)
-    : scene_(scene), folder_(scene.parent_path()) {
-    std::error_code ignored;
-    const auto canonical = [&](const std::filesystem::path& path) {
-        const auto absolute = std::filesystem::absolute(path.empty() ? "." : path, ignored);
-        auto result = std::filesystem::weakly_canonical(absolute, ignored);
-        return ignored ? absolute.lexically_normal() : result;
-    };
-    roots_.push_back(canonical(folder_).parent_path());
-    for (const std::filesystem::path& allowed : limits.allowed_folders) roots_.push_back(canonical(allowed));
-}
+    : scene_(scene), folder_(scene.parent_path()), folders_(scene, limits) {}
 
 const NamedFiles::Found& NamedFiles::find(std::string_view name) {
     const auto known = seen_.find(name);
@@ -71,10 +62,7 @@ NamedFiles::Found NamedFiles::look(std::string_view name) {
     std::error_code error;
     const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
     if (error) return {path, "cannot be found: " + error.message(), "a path is relative to the scene's folder"};
-    const auto inside = [&](const std::filesystem::path& root) {
-        return std::ranges::mismatch(root, real).in1 == root.end();
-    };
-    if (std::ranges::none_of(roots_, inside))
+    if (!folders_.contain(real))
         return {path, "lies outside the folders that this scene may read",
                 "allow its folder with --allow-path " + real.parent_path().string()};
     if (std::string problem = file_problem(path); !problem.empty())

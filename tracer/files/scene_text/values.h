@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "tracer/files/scene_folders.h"
 #include "tracer/files/scene_text/lexer.h"
 #include "tracer/ground/error.h"
 #include "tracer/scene/limits.h"
@@ -68,7 +69,7 @@ class NamedFiles {
     Found look(std::string_view name);
 
     std::filesystem::path scene_, folder_;
-    std::vector<std::filesystem::path> roots_;
+    SceneFolders folders_;
     std::map<Identity, std::filesystem::path> first_names_;
     std::map<std::string, Found, std::less<>> seen_;
 };
