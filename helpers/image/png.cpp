@@ -6,6 +6,9 @@
 #include <csetjmp>
 #include <cstring>
 #include <new>
+#include <string_view>
+
+#include "helpers/image/orientation.h"
 
 namespace raywalk {
 
@@ -77,6 +80,21 @@ std::string decode(PngTask& task, const ImageRefusal& refusal, Image& image) {
     return read_rows(task) ? std::string() : task.problem;
 }
 
+// What the eXIf chunk says (PNG 3rd edition, 11.3.4.5): libpng is told to skip all that makes no pixels.
+int orientation_of(std::span<const char> file) {
+    constexpr std::size_t signature = 8, before_data = 8, checksum = 4;
+    for (std::size_t at = signature; at + before_data <= file.size();) {
+        std::size_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(file[at + i]);
+        const std::string_view type(&file[at + 4], 4);
+        at += before_data;
+        if (length > file.size() - at) break;
+        if (type == "eXIf") return exif_orientation({reinterpret_cast<const unsigned char*>(file.data()) + at, length});
+        at += std::min(length + checksum, file.size() - at);
+    }
+    return 1;
+}
+
 void on_write(png_structp png, png_bytep data, png_size_t size) {
     if (!static_cast<EncodedFile*>(png_get_io_ptr(png))->append({reinterpret_cast<const char*>(data), size}))
         png_error(png, "it cannot be written");
@@ -111,6 +129,7 @@ std::string decode_png(std::span<const char> bytes, const ImageRefusal& refusal,
     std::string problem = decode(task, refusal, image);
     png_destroy_read_struct(&task.png, &task.info, nullptr);
     for (std::uint32_t& texel : image.texels) texel &= 0xFF'FFFF;  // without alpha
+    if (problem.empty()) turn_upright(image, orientation_of(bytes));
     return problem;
 }
 

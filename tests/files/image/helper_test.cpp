@@ -126,6 +126,25 @@ TEST(Orientation, IsReadFromExifInEitherByteOrderAndFromNothingElse) {
     EXPECT_EQ(exif_orientation(far), 1);
 }
 
+TEST(ImageTest, APngWithAnExifChunkIsTurnedUpright) {
+    const TestFolder folder;
+    FloatImage wide{3, 2, std::vector<float>(18, 0.0f)};
+    for (int channel = 0; channel < 3; ++channel) wide.rgb[static_cast<std::size_t>(channel)] = 1;  // upper left
+    write_image(folder.path() / "a.png", wide);
+    std::string bytes = content_of(folder.path() / "a.png");
+    constexpr std::size_t after_header = 33;
+    const std::string to_the_right("MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0", 22);
+    bytes.insert(after_header, std::string("\0\0\0\x16", 4) + "eXIf" + to_the_right + "none");
+    const Image turned = read_image(folder.write("b.png", bytes), {}, {"x.scene", 1, 1, 1});
+    EXPECT_EQ(turned.width, 2);
+    EXPECT_EQ(turned.height, 3);
+    EXPECT_EQ(turned.texels, (std::vector<std::uint32_t>{0, 0xFFFFFF, 0, 0, 0, 0}));
+    for (const std::size_t length : {after_header + 8, after_header + 20}) {
+        const std::filesystem::path cut = folder.write("cut.png", bytes.substr(0, length));
+        EXPECT_THROW(read_image(cut, {}, {"x.scene", 1, 1, 1}), InputError) << length;
+    }
+}
+
 TEST(ImageTest, RadianceRowsFromTheBottomAreTurnedOver) {
     const TestFolder folder;
     FloatImage image = grey(8, 8);
