@@ -8,6 +8,7 @@
 #include "app/display/frame_writer.h"
 #include "app/display/no_display.h"
 #include "app/display/presenter.h"
+#include "app/exposure.h"
 #include "app/process/console.h"
 #include "app/process/interrupts.h"
 #include "app/process/output_files.h"
@@ -39,9 +40,11 @@ class Capture {
           renderer_(loaded.compiled, select_kernels(options.isa), options.threads),
           samples_(samples_per_pixel(options, loaded.scene)) {
         // As in the window: exposure is that of the first full picture, whatever keys follow.
-        const std::optional<float> fixed = options.exposure.value_or(Exposure{}).value;
-        if (!fixed) trace(opening_view(options, loaded.scene), 1);
-        exposure_ = fixed ? *fixed : normalizing_exposure(renderer_.film());
+        const View opening = opening_view(options, loaded.scene);
+        exposure_ = settled_exposure(options, loaded.scene, opening, renderer_);
+        if (exposure_) return;
+        trace(opening, 1);
+        exposure_ = normalizing_exposure(renderer_.film());
     }
 
     // Everything of the view that there is time for before an interrupt.

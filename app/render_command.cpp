@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <optional>
 
 #include "app/commands.h"
+#include "app/exposure.h"
 #include "app/process/console.h"
 #include "app/process/interrupts.h"
 #include "app/process/output_files.h"
@@ -39,15 +41,15 @@ void render(Renderer& renderer, std::uint32_t samples, bool quiet, const std::fu
     }
 }
 
-void save(const Renderer& renderer, const Options& options) {
+// `exposure`: none where that of the picture itself counts.
+void save(const Renderer& renderer, const Options& options, std::optional<float> exposure) {
     const UnbreakableSaving unbreakable(appears_whole(options.output));
     const Film& film = renderer.film();
     if (is_float_extension(options.output)) {
         write_image(options.output, radiance_rows(film), saving_now());
         return;
     }
-    const Exposure exposure = options.exposure.value_or(Exposure{});
-    const float factor = exposure.value ? *exposure.value : normalizing_exposure(film);
+    const float factor = exposure ? *exposure : normalizing_exposure(film);
     write_image(options.output, film.width, film.height, display_values(film, renderer.kernels(), factor),
                 saving_now());
 }
@@ -79,9 +81,9 @@ void print_ray_times(const Renderer& renderer, double seconds) {
 
 // Saves what there is of the picture and says so; returns the exit code.
 int conclude_picture(const Options& options, const LoadedScene& loaded, const Renderer& renderer, std::uint32_t samples,
-                     double seconds) {
+                     std::optional<float> exposure, double seconds) {
     const bool quiet = options.verbosity == Verbosity::quiet, verbose = options.verbosity == Verbosity::verbose;
-    save(renderer, options);
+    save(renderer, options, exposure);
     if (options.stats) write_statistics(*options.stats, statistics_of(options, loaded, renderer, seconds));
     if (const std::uint64_t dropped = renderer.ray_counts().dropped_samples; dropped > 0 && !quiet)
         print_warning(count_text(dropped, "sample") + " were not finite and count as black");
@@ -115,9 +117,13 @@ int render_command(const Options& options, const LoadedScene& loaded) {
     Renderer renderer(loaded.compiled, select_kernels(options.isa), options.threads);
     View view = opening_view(options, loaded.scene);
     view.camera = pressed(view.camera, options.keys);
+    std::optional<float> exposure;
+    if (!is_float_extension(options.output)) exposure = settled_exposure(options, loaded.scene, view, renderer);
     renderer.set_view(view);
     const std::uint32_t samples = samples_per_pixel(options, loaded.scene);
-    const auto conclude = [&] { return conclude_picture(options, loaded, renderer, samples, watch.seconds()); };
+    const auto conclude = [&] {
+        return conclude_picture(options, loaded, renderer, samples, exposure, watch.seconds());
+    };
     render(renderer, samples, quiet, conclude);
     return conclude();
 }

@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/display/no_display.h"
+#include "app/exposure.h"
 #include "app/process/console.h"
 #include "app/process/interrupts.h"
 #include "app/process/statistics.h"
@@ -74,7 +75,7 @@ int walk_in_window(const Options& options, const LoadedScene& loaded) {
 
     Renderer renderer(loaded.compiled, select_kernels(options.isa), options.threads);
     RenderThread render(renderer, presenter.exchange(),
-                        {.opening = opening,
+                        {.opening = at_own_size(opening, loaded.scene),
                          .exposure = options.exposure.value_or(Exposure{}).value,
                          .sample_limit = limit,
                          .until_still = !options.samples_per_pixel,

@@ -36,11 +36,11 @@ std::vector<std::uint8_t> icon_pixels(int side) {
     for (int row = 0; row < side; ++row)
         for (int column = 0; column < side; ++column) {
             Color sum{};
-            for (int i = 0; i < sub * sub; ++i) {
-                const Color color =
-                    color_at((column + (i % sub + 0.5) / sub) / side, (row + (i / sub + 0.5) / sub) / side);
-                for (std::size_t c = 0; c < 4; ++c) sum[c] += color[c];
-            }
+            for (int y = 0; y < sub; ++y)
+                for (int x = 0; x < sub; ++x) {
+                    const Color color = color_at((column + (x + 0.5) / sub) / side, (row + (y + 0.5) / sub) / side);
+                    for (std::size_t c = 0; c < 4; ++c) sum[c] += color[c];
+                }
             for (const double channel : sum)
                 pixels.push_back(static_cast<std::uint8_t>(std::lround(255 * channel / (sub * sub))));
         }

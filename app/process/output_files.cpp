@@ -20,11 +20,31 @@ void require_none(const fs::path& file, const std::string& obstacle) {
     if (!obstacle.empty()) throw WorkError("cannot write " + quoted_name(file.string()) + ": " + obstacle);
 }
 
+// Absolute, links followed, whether it is there or not yet.
+fs::path real_path_of(const fs::path& file) {
+    std::error_code error;
+    return fs::weakly_canonical(fs::absolute(written_file(file)), error);
+}
+
 // Whether there or not yet there; devices take any number of files.
 bool same_file(const fs::path& a, const fs::path& b) {
     std::error_code error;
     if (fs::exists(a, error)) return fs::is_regular_file(a, error) && fs::equivalent(a, b, error) && !error;
-    return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) && !error;
+    return real_path_of(a) == real_path_of(b);
+}
+
+// Whether frames of the pattern ("walk-%04d.png") include the file, whatever their number.
+bool is_a_frame(const std::string& pattern, const fs::path& file) {
+    const fs::path real = real_path_of(file);
+    if (real.parent_path() != real_path_of(fs::absolute(pattern).parent_path())) return false;
+    const std::string name = real.filename().string(), wanted = fs::path(pattern).filename().string();
+    const std::size_t percent = wanted.find('%'), end = wanted.find('d', percent);
+    if (percent == std::string::npos || end == std::string::npos) return false;
+    const std::string before = wanted.substr(0, percent), after = wanted.substr(end + 1);
+    if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
+        return false;
+    const std::string_view number(name.data() + before.size(), name.size() - before.size() - after.size());
+    return number.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 }  // namespace
@@ -32,6 +52,10 @@ bool same_file(const fs::path& a, const fs::path& b) {
 void require_writable_outputs(const Options& options) {
     if (has_output(options)) require_none(options.output, obstacle_to_writing_image(options.output));
     if (options.frames) require_none(*options.frames, obstacle_to_writing_image(*options.frames));
+    for (const fs::path& file : {options.output, options.stats.value_or("-")})
+        if (options.frames && file != "-" && is_a_frame(*options.frames, file))
+            throw UsageError("--frames " + quoted_name(*options.frames) + " would overwrite " +
+                             quoted_name(file.string()) + ": choose another name");
     if (!has_statistics(options)) return;
     require_none(*options.stats, obstacle_to_writing(*options.stats));
     if (has_output(options) && same_file(options.output, *options.stats))

@@ -20,7 +20,7 @@ namespace raywalk {
 class RenderThread {
   public:
     struct Setup {
-        View opening;                    // exposure is normalised to this picture (spec 4.8)
+        View opening;                    // exposure is normalised to this picture (spec 4.8), of its own size
         std::optional<float> exposure;   // a fixed factor instead
         std::uint32_t sample_limit = 1;  // a pixel; then the thread sleeps
         bool until_still = false;        // or earlier, when twice the samples changed no display value

@@ -253,6 +253,45 @@ TEST_F(CommandLine, CheckReportsEveryMistakeOfSceneMeshAndImage) {
     EXPECT_THAT(outcome.errors, HasSubstr("^"));
 }
 
+// A lamp close to a wall makes a spot that a small picture sees the brightest point of less often than a large one.
+TEST_F(CommandLine, APreviewIsAsBrightAsThePicture) {
+    write_file(path("spot.scene"),
+               "Viewer\ngeo 160 120\ncenter 0 1 6\ntarget 0 0.8 0\nup 0 1 0\nfovy 45\n"
+               "Light\norigin 3 6 4\ncolor WHITE\nintensity 1\nLight\norigin 3 1 -5.9\ncolor WHITE\nintensity 4\n"
+               "Plane\ntexture PureTexture FLOOR WHITE\nnormal 0 0 1\noffset -6\n");
+    const auto brightness = [&](const std::string& size) {
+        const Outcome outcome = raywalk({"spot.scene", "-render", "a.png", "-q", "--size", size});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        const Image image = pixels("a.png");
+        double sum = 0;
+        for (const std::uint32_t texel : image.texels) sum += red(texel);
+        return sum / static_cast<double>(image.texels.size());
+    };
+    const double own = brightness("160x120");
+    for (const char* size : {"40x30", "80x60", "640x480"}) EXPECT_NEAR(brightness(size) / own, 1, 0.01) << size;
+}
+
+TEST_F(CommandLine, OutputsOfOneRunAreDifferentFiles) {
+    const std::vector<std::string> frames = {"room.scene", "--capture", "a-3.png", "--keys", "w", "--frames"};
+    fs::create_directory(path("folder"));
+    fs::create_symlink("../c-7.png", path("folder/link.json"));
+    const auto with = [&](std::vector<std::string> more) {
+        std::vector<std::string> words = frames;
+        words.insert(words.end(), more.begin(), more.end());
+        return raywalk(words);
+    };
+    for (const std::vector<std::string>& more : {std::vector<std::string>{"a-%d.png"},
+                                                 {"./a-%02d.png"},
+                                                 {"folder/../a-%d.png"},
+                                                 {"b-%d.png", "--stats", "./a-3.png"},
+                                                 {"c-%d.png", "--stats", "folder/link.json"}}) {
+        const Outcome outcome = with(more);
+        EXPECT_EQ(outcome.exit_code, 2) << more[0] << outcome.errors;
+        EXPECT_THAT(outcome.errors, HasSubstr("choose another"));
+    }
+    EXPECT_EQ(files(), 2u) << "nothing was written";
+}
+
 TEST_F(CommandLine, ASceneThatShipsIsFoundByItsName) {
     for (const std::string name : {"cornell_box", "cornell_box.scene"}) {
         const Outcome outcome = raywalk({name, "-render", "box.png", "--size", "16x12", "--spp", "1"});

@@ -238,3 +238,9 @@ fault "lines of other people's files are shown" tracer/files/load.cpp \
 fault "the quota of version 1 is not read" tracer/ground/control_groups.cpp \
     'quota = content_of(folder / "cpu.cfs_quota_us");' '' \
     ground_tests 'ControlGroups.VersionOneIsReadAsVersionTwo'
+fault "previews have an exposure of their own" app/exposure.cpp \
+    'return normalizing_exposure(renderer.film());' 'return {};' \
+    command_line_tests 'CommandLine.APreviewIsAsBrightAsThePicture'
+fault "a PNG lies as it was held" helpers/image/png.cpp \
+    'if (type == "eXIf")' 'if (type == "none")' \
+    files_tests 'ImageTest.APngWithAnExifChunkIsTurnedUpright'

@@ -22,21 +22,6 @@ namespace {
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
-// Where the name leads: renaming over a link would replace the link, not what it points to.
-fs::path followed(const fs::path& file) {
-    std::error_code error;
-    if (!fs::is_symlink(file, error)) return file;
-    // Link by link, since what the last one names need not be there yet; as many as the system follows.
-    constexpr int most_links = 40;
-    fs::path target = file;
-    for (int i = 0; i < most_links && fs::is_symlink(target, error); ++i) {
-        const fs::path next = fs::read_symlink(target, error);
-        if (error) return file;
-        target = folder_of(target) / next;  // as it is where `next` is absolute
-    }
-    return target;
-}
-
 // The rights that the new file of `target` starts with; `old` is what it replaces, if there is any.
 mode_t rights_beside(const std::optional<struct stat>& old) { return old ? old->st_mode & 0600 : 0666; }
 
@@ -117,7 +102,7 @@ std::string obstacle_to_replacing(const fs::path& target, const fs::path& folder
 }  // namespace
 
 WholeFile::WholeFile(fs::path file)
-    : file_(std::move(file)), target_(followed(file_)), is_direct_(is_special(target_)) {
+    : file_(std::move(file)), target_(written_file(file_)), is_direct_(is_special(target_)) {
     if (is_direct_) {
         descriptor_ = memfd_create("raywalk-file", MFD_CLOEXEC);
         if (descriptor_ < 0) fail(errno);
@@ -197,7 +182,21 @@ void write_whole(const fs::path& file, std::string_view bytes, Durability durabi
     whole.finish(durability);
 }
 
-bool appears_whole(const fs::path& file) { return !is_special(followed(file)); }
+fs::path written_file(const fs::path& file) {
+    std::error_code error;
+    if (!fs::is_symlink(file, error)) return file;
+    // Link by link, since what the last one names need not be there yet; as many as the system follows.
+    constexpr int most_links = 40;
+    fs::path target = file;
+    for (int i = 0; i < most_links && fs::is_symlink(target, error); ++i) {
+        const fs::path next = fs::read_symlink(target, error);
+        if (error) return file;
+        target = folder_of(target) / next;  // as it is where `next` is absolute
+    }
+    return target;
+}
+
+bool appears_whole(const fs::path& file) { return !is_special(written_file(file)); }
 
 std::string obstacle_to_writing(const fs::path& file) {
     std::error_code error;
@@ -206,7 +205,7 @@ std::string obstacle_to_writing(const fs::path& file) {
     struct stat status {};
     if (stat(file.c_str(), &status) != 0 && errno != ENOENT && errno != ENOTDIR)
         return std::generic_category().message(errno);
-    const fs::path target = followed(file);
+    const fs::path target = written_file(file);
     if (is_special(target)) return access(target.c_str(), W_OK) == 0 ? "" : std::generic_category().message(errno);
     const fs::path folder = folder_of(target);
     if (!fs::exists(folder, error)) return "its folder " + quoted_name(folder.string()) + " does not exist";

@@ -48,6 +48,10 @@ class WholeFile {
 void write_whole(const std::filesystem::path& file, std::string_view bytes,
                  Durability durability = Durability::on_disk);
 
+// The file that a WholeFile of this name writes: where links lead from there, as renaming over a link would replace the
+// link. What the last one names need not be there yet.
+std::filesystem::path written_file(const std::filesystem::path& file);
+
 // Whether a WholeFile of this name appears whole: it is no device and no pipe.
 bool appears_whole(const std::filesystem::path& file);
 
