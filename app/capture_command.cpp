@@ -13,6 +13,7 @@
 #include "app/process/interrupts.h"
 #include "app/process/output_files.h"
 #include "app/process/rescue.h"
+#include "app/process/saving.h"
 #include "app/process/statistics.h"
 #include "tracer/files/image/image.h"
 #include "tracer/ground/stopwatch.h"
@@ -51,6 +52,7 @@ class Capture {
     void trace(const View& view) { trace(view, samples_); }
     void save(const std::filesystem::path& file);
 
+    [[nodiscard]] SavingReserve& reserve() { return reserve_; }
     [[nodiscard]] const Renderer& renderer() const { return renderer_; }
     [[nodiscard]] double traced_seconds() const { return traced_seconds_; }
     [[nodiscard]] const std::string& device_name() const { return presenter_.device_name(); }
@@ -71,6 +73,7 @@ class Capture {
     }
 
     std::function<int(Capture&)> conclude_;
+    SavingReserve reserve_;
     OffscreenPresenter presenter_;  // before the renderer: without a device there is no use in tracing
     Renderer renderer_;
     std::uint32_t samples_;
@@ -97,7 +100,7 @@ void Capture::save(const std::filesystem::path& file) {
 
 // Saves what there is of the last picture; returns the exit code.
 int conclude_capture(const Options& options, const LoadedScene& loaded, Capture& capture) {
-    capture.save(options.output);
+    save_or_rescue(options.output, capture.renderer().film(), capture.reserve(), [&] { capture.save(options.output); });
     if (options.stats) {
         nlohmann::ordered_json statistics =
             statistics_of(options, loaded, capture.renderer(), capture.traced_seconds());

@@ -10,6 +10,7 @@
 #include "app/process/output_files.h"
 #include "app/process/progress.h"
 #include "app/process/rescue.h"
+#include "app/process/saving.h"
 #include "app/process/statistics.h"
 #include "tracer/files/image/image.h"
 #include "tracer/ground/stopwatch.h"
@@ -81,9 +82,9 @@ void print_ray_times(const Renderer& renderer, double seconds) {
 
 // Saves what there is of the picture and says so; returns the exit code.
 int conclude_picture(const Options& options, const LoadedScene& loaded, const Renderer& renderer, std::uint32_t samples,
-                     std::optional<float> exposure, double seconds) {
+                     std::optional<float> exposure, SavingReserve& reserve, double seconds) {
     const bool quiet = options.verbosity == Verbosity::quiet, verbose = options.verbosity == Verbosity::verbose;
-    save(renderer, options, exposure);
+    save_or_rescue(options.output, renderer.film(), reserve, [&] { save(renderer, options, exposure); });
     if (options.stats) write_statistics(*options.stats, statistics_of(options, loaded, renderer, seconds));
     if (const std::uint64_t dropped = renderer.ray_counts().dropped_samples; dropped > 0 && !quiet)
         print_warning(count_text(dropped, "sample") + " were not finite and count as black");
@@ -114,6 +115,7 @@ int render_command(const Options& options, const LoadedScene& loaded) {
 
     const GracefulInterrupts graceful;
     const Stopwatch watch;
+    SavingReserve reserve;
     Renderer renderer(loaded.compiled, select_kernels(options.isa), options.threads);
     View view = opening_view(options, loaded.scene);
     view.camera = pressed(view.camera, options.keys);
@@ -122,7 +124,7 @@ int render_command(const Options& options, const LoadedScene& loaded) {
     renderer.set_view(view);
     const std::uint32_t samples = samples_per_pixel(options, loaded.scene);
     const auto conclude = [&] {
-        return conclude_picture(options, loaded, renderer, samples, exposure, watch.seconds());
+        return conclude_picture(options, loaded, renderer, samples, exposure, reserve, watch.seconds());
     };
     render(renderer, samples, quiet, conclude);
     return conclude();

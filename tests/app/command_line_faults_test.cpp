@@ -1,4 +1,5 @@
 // The program where something is wrong: its input, its surroundings, its user's patience.
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -150,6 +151,17 @@ TEST_F(CommandLine, AMissingEncoderIsNoticedBeforeTheWork) {
     EXPECT_EQ(run(alone).exit_code, 0);
 }
 
+// Whether a message names a file of radiance, and that holds the small scene's picture.
+bool rescued_picture(const std::string& message, const std::string& name, const fs::path& folder) {
+    const std::string before = "its radiance is saved as '";
+    const std::size_t at = message.find(before);
+    if (at == std::string::npos) return false;
+    const std::size_t begin = at + before.size();
+    const fs::path file = message.substr(begin, message.find('\'', begin) - begin);
+    if (file.filename().string().find("rescued-" + name) != 0) return false;
+    return read_file(folder / file).starts_with("PF\n64 48\n");
+}
+
 TEST_F(CommandLine, AnEncoderThatBreaksEndsWithOneAndKeepsTheOldPicture) {
     fs::copy_file(RAYWALK_PROGRAM, path("raywalk"));
     const std::pair<const char*, const char*> ends[] = {
@@ -167,6 +179,7 @@ TEST_F(CommandLine, AnEncoderThatBreaksEndsWithOneAndKeepsTheOldPicture) {
             EXPECT_THAT(outcome.errors, HasSubstr("cannot write '" + name + "': ")) << name;
             EXPECT_THAT(outcome.errors, HasSubstr(message)) << name;
             EXPECT_EQ(read_file(path(name)), "old");
+            EXPECT_TRUE(rescued_picture(outcome.errors, name, path(""))) << outcome.errors;
         }
 }
 
@@ -282,6 +295,38 @@ TEST_F(CommandLine, AnInterruptSavesEveryFormatWhole) {
     EXPECT_EQ(fs::file_size(path("a.pfm")), std::string("PF\n301 203\n-1.0\n").size() + 301 * 203 * 12);
     EXPECT_EQ(files(), 7u);
 }
+
+// Its folder is gone when the work is done; then the folder of temporary files takes the radiance.
+TEST_F(CommandLine, APictureWhoseFolderIsGoneIsRescued) {
+    fs::create_directory(path("gone"));
+    fs::create_directory(path("temporary"));
+    Process endless = process({"room.scene", "-render", "gone/a.png", "--spp", "10000000"});
+    endless.environment.push_back("TMPDIR=" + path("temporary").string());
+    const Outcome outcome = disturbed(endless, [&](int id) {
+        fs::remove_all(path("gone"));
+        kill(id, SIGINT);
+    });
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.errors, HasSubstr("cannot write 'gone/a.png'"));
+    EXPECT_TRUE(rescued_picture(outcome.errors, "a.png", path(""))) << outcome.errors;
+}
+
+#if !RAYWALK_SANITIZED  // whose own memory is past every limit
+// The encoder has no memory for its libraries, and this program none but what it set aside.
+TEST_F(CommandLine, APictureIsRescuedFromALateLimitOfMemory) {
+    for (const std::string name : {"a.exr", "a.tif", "a.hdr"}) {
+        const Outcome outcome =
+            disturbed(process({"room.scene", "-render", name, "--spp", "10000000", "--threads", "2"}), [&](int id) {
+                const rlimit little{1 << 20, 1 << 20};
+                prlimit(id, RLIMIT_AS, &little, nullptr);
+                kill(id, SIGINT);
+            });
+        EXPECT_EQ(outcome.exit_code, 1) << outcome.signal << outcome.errors;
+        EXPECT_TRUE(rescued_picture(outcome.errors, name, path(""))) << outcome.errors;
+        EXPECT_FALSE(fs::exists(path(name)));
+    }
+}
+#endif
 
 TEST_F(CommandLine, ARepeatedInterruptIsOneAndThePictureIsSaved) {
     const Outcome outcome =

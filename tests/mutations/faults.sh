@@ -244,3 +244,9 @@ fault "previews have an exposure of their own" app/exposure.cpp \
 fault "a PNG lies as it was held" helpers/image/png.cpp \
     'if (type == "eXIf")' 'if (type == "none")' \
     files_tests 'ImageTest.APngWithAnExifChunkIsTurnedUpright'
+fault "a picture that cannot be saved is lost" app/process/saving.cpp \
+    'const fs::path file = rescued(output, film);' 'const fs::path file;' \
+    command_line_tests 'CommandLine.APictureWhoseFolderIsGoneIsRescued'
+fault "outputs overwrite each other" app/process/output_files.cpp \
+    'return real_path_of(a) == real_path_of(b);' 'return a == b;' \
+    command_line_tests 'CommandLine.OutputsOfOneRunAreDifferentFiles'
