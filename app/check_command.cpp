@@ -2,6 +2,7 @@
 
 #include "app/commands.h"
 #include "app/process/console.h"
+#include "tracer/compiled/local_origin.h"
 #include "tracer/files/load.h"
 #include "tracer/files/scene_text/parser.h"
 
@@ -52,19 +53,21 @@ std::string picture_line(const Options& options, const Scene& scene) {
 int check_command(const Options& options) {
     std::vector<Diagnostic> warnings;
     const Scene scene = read_scene(options.scene, options.limits, warnings);
-    MemoryBudget memory(options.limits);
-    const SceneFiles<TriangleMesh> meshes = read_meshes(scene, options.limits, memory);
-    const SceneFiles<Image> images = read_images(scene, options.limits, memory);
-    for (const auto* found : {&meshes.warnings, &images.warnings})
-        warnings.insert(warnings.end(), found->begin(), found->end());
-    if (options.verbosity != Verbosity::quiet) print_diagnostics(warnings);
-
-    std::vector<Diagnostic> errors = meshes.errors;
-    errors.insert(errors.end(), images.errors.begin(), images.errors.end());
-    if (!errors.empty()) throw InputError(std::move(errors));
+    for (Diagnostic& warning : small_shape_warnings(scene)) warnings.push_back(std::move(warning));
+    const auto print_warnings = [&] {
+        if (options.verbosity != Verbosity::quiet) print_diagnostics(warnings);
+    };
+    Assets assets;
+    try {
+        assets = load_assets(scene, options.limits, warnings);
+    } catch (const InputError&) {
+        print_warnings();
+        throw;
+    }
+    print_warnings();
     if (options.verbosity == Verbosity::quiet) return exit_done;
     print_result("scene: " + printable(scene.file.string()) + "\n" + picture_line(options, scene) + shape_lines(scene) +
-                 mesh_lines(scene, meshes.files) + image_lines(images.files));
+                 mesh_lines(scene, assets.meshes) + image_lines(assets.images));
     return exit_done;
 }
 

@@ -1,8 +1,10 @@
 #include "app/loaded_scene.h"
-#include "tracer/compiled/compile.h"
 
 #include "app/process/console.h"
 #include "app/process/output_files.h"
+#include "tracer/compiled/compile.h"
+#include "tracer/compiled/local_origin.h"
+#include "tracer/files/load.h"
 #include "tracer/files/scene_text/parser.h"
 #include "tracer/ground/stopwatch.h"
 
@@ -19,7 +21,12 @@ LoadedScene load_scene(const Options& options) {
         loaded.scene = read_scene(options.scene, options.limits, warnings);
         loaded.read_seconds = watch.seconds();
         require_inputs_kept(options, loaded.scene);
-        loaded.compiled = compile(loaded.scene, options.compile, options.limits, warnings, &loaded.compile_statistics);
+        for (Diagnostic& warning : small_shape_warnings(loaded.scene)) warnings.push_back(std::move(warning));
+        Assets assets = load_assets(loaded.scene, options.limits, warnings);
+        loaded.mesh_seconds = assets.mesh_seconds;
+        loaded.image_seconds = assets.image_seconds;
+        loaded.compiled = compile(loaded.scene, std::move(assets), options.compile, &loaded.build);
+        loaded.load_seconds = watch.seconds();
     } catch (const InputError&) {
         print_warnings();
         throw;

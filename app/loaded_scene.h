@@ -14,8 +14,9 @@ namespace raywalk {
 struct LoadedScene {
     Scene scene;
     CompiledScene compiled;
-    double read_seconds = 0;  // the scene file alone
-    CompileStatistics compile_statistics;
+    BuildStatistics build;
+    // Of the scene file alone, of its meshes and images (at the same time), of all of it until it is ready.
+    double read_seconds = 0, mesh_seconds = 0, image_seconds = 0, load_seconds = 0;
 };
 
 // Reads and compiles options.scene; prints warnings on stderr unless quiet. Throws InputError.

@@ -65,10 +65,9 @@ double finished_share(const Film& film, std::uint32_t samples) {
 std::string size_text(const Film& film) { return std::to_string(film.width) + " x " + std::to_string(film.height); }
 
 void print_load_times(const LoadedScene& loaded) {
-    const CompileStatistics& compile = loaded.compile_statistics;
     print_note("scene read in " + duration_text(loaded.read_seconds) + ", meshes in " +
-               duration_text(compile.mesh_seconds) + ", images in " + duration_text(compile.image_seconds) +
-               "; tree built in " + duration_text(compile.build.seconds));
+               duration_text(loaded.mesh_seconds) + ", images in " + duration_text(loaded.image_seconds) +
+               "; tree built in " + duration_text(loaded.build.seconds));
 }
 
 void print_ray_times(const Renderer& renderer, double seconds) {

@@ -45,7 +45,6 @@ json rays_of(const RayCounts& rays, double trace_seconds) {
 
 json statistics_of(const Options& options, const LoadedScene& loaded, const Renderer& renderer, double trace_seconds) {
     const View& view = renderer.view();
-    const CompileStatistics& compile = loaded.compile_statistics;
     return {{"version", RAYWALK_VERSION},
             {"scene", counts_of(loaded)},
             {"picture",
@@ -56,13 +55,13 @@ json statistics_of(const Options& options, const LoadedScene& loaded, const Rend
               {"seed", view.settings.seed}}},
             {"seconds",
              {{"read_scene", loaded.read_seconds},
-              {"read_meshes", compile.mesh_seconds},
-              {"read_images", compile.image_seconds},
-              {"build", compile.build.seconds},
-              {"load", loaded.read_seconds + compile.total_seconds},
+              {"read_meshes", loaded.mesh_seconds},
+              {"read_images", loaded.image_seconds},
+              {"build", loaded.build.seconds},
+              {"load", loaded.load_seconds},
               {"trace", trace_seconds}}},
             {"rays", rays_of(renderer.ray_counts(), trace_seconds)},
-            {"tree", tree_of(options, compile.build)},
+            {"tree", tree_of(options, loaded.build)},
             {"threads", renderer.threads()},
             {"isa", renderer.kernels().name},
             {"lanes", renderer.kernels().lanes}};

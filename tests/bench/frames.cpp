@@ -97,7 +97,7 @@ CompiledScene compile_for(const FrameScene& frame, Accelerator accelerator) {
     Limits limits;
     limits.allowed_folders.emplace_back("/");
     std::vector<Diagnostic> warnings;
-    return compile(frame.scene, options, limits, warnings);
+    return compile(frame.scene, load_assets(frame.scene, limits, warnings), options);
 }
 
 View view_of(const FrameScene& frame, int width, int height) {

@@ -5,6 +5,7 @@
 
 #include "tests/support/process.h"
 #include "tracer/compiled/compile.h"
+#include "tracer/compiled/local_origin.h"
 #include "tracer/files/image/image.h"
 #include "tracer/files/load.h"
 
@@ -30,7 +31,7 @@ constexpr const char* tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3
 
 CompiledScene compiled(const Scene& scene, std::vector<Diagnostic>* warnings = nullptr, const Limits& limits = {}) {
     std::vector<Diagnostic> ignored;
-    return compile(scene, {}, limits, warnings != nullptr ? *warnings : ignored);
+    return compile(scene, load_assets(scene, limits, warnings != nullptr ? *warnings : ignored), {});
 }
 
 std::vector<Diagnostic> errors_of(const Scene& scene, const Limits& limits = {}) {
@@ -264,15 +265,23 @@ TEST(Compile, BudgetsCountTheWholeScene) {
     const std::vector<Diagnostic> image_errors = errors_of(textured, limits);
     ASSERT_EQ(image_errors.size(), 1u);
     EXPECT_THAT(image_errors[0].expected, HasSubstr("--max-all-image-pixels"));
+}
 
-    Scene lit;
-    lit.file = "test.scene";
-    for (int i = 0; i < 2; ++i)
-        lit.lights.push_back(
-            {.origin = {0, 0, 0}, .color = {1, 1, 1}, .intensity = 1, .area = AreaSpread{.n = 100'000, .radius = 1}});
-    const std::vector<Diagnostic> light_errors = errors_of(lit);
-    ASSERT_EQ(light_errors.size(), 1u);
-    EXPECT_THAT(light_errors[0].expected, HasSubstr("--max-light-points"));
+TEST(Compile, ShapesTooSmallForTheirPlaceAreWarnedOf) {
+    Scene scene;
+    scene.file = "test.scene";
+    const auto add = [&](double x, double radius) {
+        scene.spheres.push_back(
+            {.texture = pure({1, 0, 0}), .center = {x, 0, 0}, .radius = radius, .refraction_index = 1});
+    };
+    add(0, 1);
+    add(1000, 1);
+    EXPECT_TRUE(small_shape_warnings(scene).empty());
+    add(1e6, 0.9);  // 2^-20 of a million is 0.95
+    ASSERT_EQ(small_shape_warnings(scene).size(), 1u);
+    EXPECT_THAT(small_shape_warnings(scene)[0].what, HasSubstr("1 shape is smaller than a millionth"));
+    add(1e6, 2);
+    EXPECT_THAT(small_shape_warnings(scene)[0].what, HasSubstr("1 shape is"));
 }
 
 }  // namespace

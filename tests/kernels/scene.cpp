@@ -13,7 +13,7 @@ namespace raywalk {
 
 CompiledScene compiled(const Scene& scene, Accelerator accelerator) {
     std::vector<Diagnostic> warnings;
-    return compile(scene, {.accelerator = accelerator, .kd = {}}, Limits{}, warnings);
+    return compile(scene, load_assets(scene, {}, warnings), {.accelerator = accelerator, .kd = {}});
 }
 
 Picture picture_of(const CompiledScene& scene, const Camera& camera, int width, int height,

@@ -28,8 +28,7 @@ CompiledScene test_scene() {
         {.texture = texture(4, PureTexture{{0, 1, 1}}), .center = {0.5, 0, -8}, .radius = 1, .refraction_index = 1});
     scene.faces.push_back(
         {.texture = texture(4, PureTexture{{1, 0, 0}}), .a = {-4, -1, -10}, .b = {4, -1, -10}, .c = {0, 4, -10}});
-    std::vector<Diagnostic> warnings;
-    return compile(scene, {}, {}, warnings);
+    return compile(scene, {}, {});
 }
 
 View view_of(int width, int height, bool one_shot = false) {

@@ -30,8 +30,7 @@ Scene balls_on_a_floor() {
 class Bench {
   public:
     explicit Bench(std::uint32_t limit, std::optional<float> exposure = {}) : limit_(limit), exposure_(exposure) {
-        std::vector<Diagnostic> warnings;
-        scene_ = compile(description_, {}, {}, warnings);
+        scene_ = compile(description_, {}, {});
         renderer_ = std::make_unique<Renderer>(scene_, nullptr, 2);
         opening = {.camera = opening_camera(description_.viewer, 1.5),
                    .width = 96,

@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <future>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <unordered_map>
@@ -12,9 +10,7 @@
 #include "tracer/compiled/compile.h"
 #include "tracer/compiled/local_origin.h"
 #include "tracer/compiled/mesh_placement.h"
-#include "tracer/files/load.h"
 #include "tracer/ground/numeric.h"
-#include "tracer/ground/stopwatch.h"
 
 namespace raywalk {
 
@@ -65,13 +61,10 @@ class SurfaceTable {
     std::unordered_map<std::string, std::int32_t> indices_;
 };
 
-// Image file -> index, in the order of their names; known before any is read.
-std::map<std::filesystem::path, std::int32_t> image_indices(const Scene& scene) {
+// Image file -> index, in the order of their names.
+std::map<std::filesystem::path, std::int32_t> image_indices(const std::map<std::filesystem::path, Image>& images) {
     std::map<std::filesystem::path, std::int32_t> indices;
-    for (const Texture* texture : textures_of(scene))
-        if (const auto* image = std::get_if<ImageTexture>(&texture->pattern)) indices.emplace(image->file, 0);
-    std::int32_t next = 0;
-    for (auto& [file, index] : indices) index = next++;
+    for (const auto& [file, image] : images) indices.emplace(file, static_cast<std::int32_t>(indices.size()));
     return indices;
 }
 
@@ -225,29 +218,9 @@ void compile_light(const Light& light, CompiledScene& compiled) {
     compiled.light_groups.push_back({first, static_cast<std::uint32_t>(n) * static_cast<std::uint32_t>(n)});
 }
 
-void compile_lights(const Scene& scene, const Limits& limits, CompiledScene& compiled) {
-    std::uint64_t points = 0;
-    for (const Light& light : scene.lights) {
-        const auto n = static_cast<std::uint64_t>(light.area ? light.area->n : 1);
-        points += n * n;
-        if (points <= limits.light_points) continue;
-        throw InputError(error_of_file(scene.file.string(),
-                                       "the lights of this scene have more than " +
-                                           std::to_string(limits.light_points) + " points (area n counts n x n)",
-                                       how_to_raise(limits, &Limits::light_points)));
-    }
-    for (const Light& light : scene.lights) compile_light(light, compiled);
-}
-
-void compile_images(const Scene& scene, std::map<std::filesystem::path, Image>& files, CompiledScene& compiled) {
-    std::uint64_t texels = 0;
+void compile_images(std::map<std::filesystem::path, Image>& files, CompiledScene& compiled) {
+    std::size_t texels = 0;
     for (const auto& [file, image] : files) texels += image.texels.size();
-    // Texels are gathered by signed 32-bit indices.
-    if (texels > std::numeric_limits<std::int32_t>::max())
-        throw InputError(error_of_file(
-            scene.file.string(),
-            "the images of this scene have " + std::to_string(texels) + " pixels together, more than 2147483647",
-            "use smaller images"));
     compiled.texels.reserve(texels);
     for (auto& [file, image] : files) {
         compiled.images.push_back({static_cast<std::uint32_t>(compiled.texels.size()), image.width, image.height});
@@ -261,51 +234,31 @@ void compile_images(const Scene& scene, std::map<std::filesystem::path, Image>& 
 
 }  // namespace
 
-CompiledScene compile(const Scene& given, const CompileOptions& options, const Limits& limits,
-                      std::vector<Diagnostic>& warnings, CompileStatistics* statistics) {
-    const Stopwatch watch;
+CompiledScene compile(const Scene& given, Assets assets, const CompileOptions& options, BuildStatistics* statistics) {
     const glm::dvec3 origin = local_origin(given);
-    warn_of_small_shapes(given, origin, warnings);
     std::optional<Scene> moved;
     if (origin != glm::dvec3(0)) moved = moved_to(origin, given);
     const Scene& scene = moved ? *moved : given;
-    MemoryBudget memory(limits);
-    // Images are decoded while meshes are read and the tree is built.
-    auto images_to_come = std::async(std::launch::async, [&] { return read_images(scene, limits, memory); });
     CompiledScene compiled;
     compiled.origin = origin;
-    compile_lights(scene, limits, compiled);
+    for (const Light& light : scene.lights) compile_light(light, compiled);
 
-    SceneFiles<TriangleMesh> meshes = read_meshes(scene, limits, memory);
-    warnings.insert(warnings.end(), meshes.warnings.begin(), meshes.warnings.end());
+    SurfaceTable surfaces(image_indices(assets.images));
+    std::vector<TriangleCorners> corners;
+    std::vector<SphereShape> spheres;
+    compile_triangles(scene, assets.meshes, surfaces, compiled, corners);
+    assets.meshes.clear();
+    compile_spheres(scene, surfaces, compiled, spheres);
+    compile_planes(scene, surfaces, compiled);
+    compiled.surfaces = std::move(surfaces.records);
+    if (compiled.surfaces.empty()) compiled.surfaces.push_back(SurfaceRecord{});  // gathers read the first
+    compile_images(assets.images, compiled);
+
     BuildStatistics build;
-    if (meshes.errors.empty()) {
-        SurfaceTable surfaces(image_indices(scene));
-        std::vector<TriangleCorners> corners;
-        std::vector<SphereShape> spheres;
-        compile_triangles(scene, meshes.files, surfaces, compiled, corners);
-        meshes.files.clear();
-        compile_spheres(scene, surfaces, compiled, spheres);
-        compile_planes(scene, surfaces, compiled);
-        compiled.surfaces = std::move(surfaces.records);
-        if (compiled.surfaces.empty()) compiled.surfaces.push_back(SurfaceRecord{});  // gathers read the first
-        const Shapes shapes{.triangles = corners, .spheres = spheres};
-        compiled.hierarchy = options.accelerator == Accelerator::kdtree ? build_kd_tree(shapes, options.kd, &build)
-                                                                        : build_bvh(shapes, &build);
-    }
-
-    SceneFiles<Image> images = images_to_come.get();
-    warnings.insert(warnings.end(), images.warnings.begin(), images.warnings.end());
-    std::vector<Diagnostic> errors = std::move(meshes.errors);
-    errors.insert(errors.end(), images.errors.begin(), images.errors.end());
-    if (!errors.empty()) throw InputError(std::move(errors));
-    compile_images(scene, images.files, compiled);
-
-    if (statistics != nullptr)
-        *statistics = {.mesh_seconds = meshes.seconds,
-                       .image_seconds = images.seconds,
-                       .total_seconds = watch.seconds(),
-                       .build = build};
+    const Shapes shapes{.triangles = corners, .spheres = spheres};
+    compiled.hierarchy = options.accelerator == Accelerator::kdtree ? build_kd_tree(shapes, options.kd, &build)
+                                                                    : build_bvh(shapes, &build);
+    if (statistics != nullptr) *statistics = build;
     return compiled;
 }
 

@@ -40,19 +40,19 @@ Scene moved_to(const glm::dvec3& origin, Scene scene) {
     return scene;
 }
 
-void warn_of_small_shapes(const Scene& scene, const glm::dvec3& origin, std::vector<Diagnostic>& warnings) {
+std::vector<Diagnostic> small_shape_warnings(const Scene& scene) {
+    const glm::dvec3 origin = local_origin(scene);
     std::size_t count = 0;
     const auto note = [&](const glm::dvec3& center, double radius) {
         count += radius < largest(center - origin) * 0x1p-20 ? 1 : 0;
     };
     for (const Sphere& sphere : scene.spheres) note(sphere.center, sphere.radius);
     for (const Mesh& mesh : scene.meshes) note(mesh.center, mesh.radius);
-    if (count == 0) return;
-    warnings.push_back(
-        warning_at({.file = scene.file.string()},
-                   std::to_string(count) + (count == 1 ? " shape is" : " shapes are") +
-                       " smaller than a millionth of the distance from the middle of the scene",
-                   "rounding shows on them; put what is small near the middle, or leave out what is far"));
+    if (count == 0) return {};
+    return {warning_at({.file = scene.file.string()},
+                       std::to_string(count) + (count == 1 ? " shape is" : " shapes are") +
+                           " smaller than a millionth of the distance from the middle of the scene",
+                       "rounding shows on them; put what is small near the middle, or leave out what is far")};
 }
 
 }  // namespace raywalk

@@ -20,7 +20,7 @@ glm::dvec3 local_origin(const Scene& scene);
 // that.
 Scene moved_to(const glm::dvec3& origin, Scene scene);
 
-// Warns of shapes that single precision cannot hold: smaller than 2^-20 of their distance from `origin`.
-void warn_of_small_shapes(const Scene& scene, const glm::dvec3& origin, std::vector<Diagnostic>& warnings);
+// A warning where single precision cannot hold some shapes: smaller than 2^-20 of their distance from the local origin.
+std::vector<Diagnostic> small_shape_warnings(const Scene& scene);
 
 }  // namespace raywalk

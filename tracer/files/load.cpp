@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <future>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -65,9 +66,10 @@ void require_count(std::uint64_t count, const Limits& limits, const SourceLocati
                               how_to_raise(limits, &Limits::files)));
 }
 
-// Throws where the images so far have too many pixels.
+// Throws where the images so far have too many pixels: kernels gather them by signed 32-bit indices.
 void require_pixels(std::uint64_t pixels, const Limits& limits, const SourceLocation& where) {
-    if (pixels <= limits.all_image_pixels) return;
+    constexpr std::uint64_t most = std::numeric_limits<std::int32_t>::max();
+    if (pixels <= std::min(limits.all_image_pixels, most)) return;
     throw InputError(error_at(where, "with this image the scene's images have " + std::to_string(pixels) + " pixels",
                               how_to_raise(limits, &Limits::all_image_pixels)));
 }
@@ -211,6 +213,21 @@ SceneFiles<Image> read_images(const Scene& scene, const Limits& limits, MemoryBu
     }
     read.seconds = watch.seconds();
     return read;
+}
+
+Assets load_assets(const Scene& scene, const Limits& limits, std::vector<Diagnostic>& warnings) {
+    MemoryBudget memory(limits);
+    auto images_to_come = std::async(std::launch::async, [&] { return read_images(scene, limits, memory); });
+    SceneFiles<TriangleMesh> meshes = read_meshes(scene, limits, memory);
+    SceneFiles<Image> images = images_to_come.get();
+    append(warnings, meshes.warnings);
+    append(warnings, images.warnings);
+    append(meshes.errors, images.errors);
+    if (!meshes.errors.empty()) throw InputError(std::move(meshes.errors));
+    return {.meshes = std::move(meshes.files),
+            .images = std::move(images.files),
+            .mesh_seconds = meshes.seconds,
+            .image_seconds = images.seconds};
 }
 
 }  // namespace raywalk

@@ -1,4 +1,4 @@
-// The meshes and images that a scene names, each file read once however often it is named.
+// From a scene to its assets: the meshes and images that it names, each file read once however often it is named.
 #pragma once
 
 #include <filesystem>
@@ -26,6 +26,16 @@ struct SceneFiles {
 // tree over them will take is counted in `memory`.
 SceneFiles<TriangleMesh> read_meshes(const Scene& scene, const Limits& limits, MemoryBudget& memory);
 SceneFiles<Image> read_images(const Scene& scene, const Limits& limits, MemoryBudget& memory);
+
+// What a scene needs beside itself.
+struct Assets {
+    std::map<std::filesystem::path, TriangleMesh> meshes;
+    std::map<std::filesystem::path, Image> images;
+    double mesh_seconds = 0, image_seconds = 0;
+};
+
+// All of it, images while meshes are read. Throws InputError with what is wrong with any file.
+Assets load_assets(const Scene& scene, const Limits& limits, std::vector<Diagnostic>& warnings);
 
 // Every texture of the scene, in the order planes, spheres, faces, meshes.
 std::vector<const Texture*> textures_of(const Scene& scene);
