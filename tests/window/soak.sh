@@ -82,7 +82,7 @@ press_letters() {
 }
 # With its two samples there is a picture that stays.
 window_stands() {
-    xdotool getwindowname "$window" | grep -q '2 of 2 samples' && shot before.png && sleep 0.5 && shot shot.png &&
+    xdotool getwindowname "$window" | grep -q ' - 2 samples' && shot before.png && sleep 0.5 && shot shot.png &&
         same before.png shot.png
 }
 
