@@ -19,6 +19,7 @@
 #include "tracer/ground/stopwatch.h"
 #include "tracer/ground/whole_file.h"
 #include "tracer/kernels/kernels.h"
+#include "tracer/rendering/resolve.h"
 
 namespace raywalk {
 namespace {
@@ -91,11 +92,7 @@ void Capture::save(const std::filesystem::path& file) {
     publish_film(presenter_.exchange(), presenter_.preferred_content(), {.samples = renderer_.samples()}, film,
                  renderer_.kernels(), exposure_ ? *exposure_ : normalizing_exposure(film), renderer_.threads());
     const std::vector<std::uint32_t> words = presenter_.present(film.width, film.height);
-    std::vector<std::uint8_t> rgb;
-    rgb.reserve(words.size() * 3);
-    for (const std::uint32_t word : words)
-        for (const int shift : {16, 8, 0}) rgb.push_back(static_cast<std::uint8_t>(word >> shift));
-    write_image(file, film.width, film.height, rgb, saving_now());
+    write_image(file, film.width, film.height, rgb_bytes(words), saving_now());
 }
 
 // Saves what there is of the last picture; returns the exit code.

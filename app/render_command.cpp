@@ -17,6 +17,7 @@
 #include "tracer/ground/whole_file.h"
 #include "tracer/kernels/kernels.h"
 #include "tracer/rendering/renderer.h"
+#include "tracer/rendering/resolve.h"
 
 namespace raywalk {
 

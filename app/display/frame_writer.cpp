@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "tracer/rendering/resolve.h"
+
 namespace raywalk {
 namespace {
 
@@ -33,27 +35,6 @@ std::uint32_t mix(std::uint32_t a, std::uint32_t b, std::uint32_t weight) {
 }
 
 }  // namespace
-
-void resolve_into(std::span<std::uint32_t> picture, const Film& film, int tile, const Kernels& kernels,
-                  float exposure) {
-    const int x = tile % film.tiles_x * tile_size, y = tile / film.tiles_x * tile_size;
-    const int columns = std::min(tile_size, film.width - x), rows = std::min(tile_size, film.height - y);
-    std::uint32_t* out = &picture[static_cast<std::size_t>(y) * film.width + x];
-    const std::uint32_t samples = film.samples[tile];
-    if (samples > 0) {
-        kernels.resolve_tile(film.tiles[tile], film_scale(exposure, samples), columns, rows, out, film.width);
-        return;
-    }
-    for (int row = 0; row < rows; ++row)
-        std::fill_n(out + static_cast<std::size_t>(row) * film.width, columns, 0xff000000u);
-}
-
-void resolve_into(std::span<std::uint32_t> picture, const Film& film, const Kernels& kernels, float exposure,
-                  int threads) {
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int tile = 0; tile < static_cast<int>(film.tiles.size()); ++tile)
-        resolve_into(picture, film, tile, kernels, exposure);
-}
 
 void publish_film(FrameExchange& exchange, FrameContent content, FrameInfo info, const Film& film,
                   const Kernels& kernels, float exposure, int threads) {

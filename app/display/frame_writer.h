@@ -11,12 +11,6 @@
 
 namespace raywalk {
 
-// Resolves one tile of the film into a picture of the film's size.
-void resolve_into(std::span<std::uint32_t> picture, const Film& film, int tile, const Kernels& kernels, float exposure);
-// All of them, on `threads` threads. Tiles without a sample are black.
-void resolve_into(std::span<std::uint32_t> picture, const Film& film, const Kernels& kernels, float exposure,
-                  int threads);
-
 // Writes the film to the next slot and publishes it. `info` says everything but size and content.
 void publish_film(FrameExchange& exchange, FrameContent content, FrameInfo info, const Film& film,
                   const Kernels& kernels, float exposure, int threads);

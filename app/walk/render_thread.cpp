@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/display/frame_writer.h"
+#include "tracer/rendering/resolve.h"
 
 namespace raywalk {
 namespace {

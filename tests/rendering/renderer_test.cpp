@@ -1,5 +1,6 @@
 #include "tracer/rendering/renderer.h"
 #include "tracer/compiled/compile.h"
+#include "tracer/rendering/resolve.h"
 
 #include <gtest/gtest.h>
 

@@ -10,6 +10,7 @@
 
 #include "app/display/fit.h"
 #include "app/display/frame_writer.h"
+#include "tracer/rendering/resolve.h"
 
 namespace raywalk {
 namespace {

@@ -10,6 +10,7 @@
 #include "app/display/frame_writer.h"
 #include "app/walk/walk.h"
 #include "tracer/compiled/compile.h"
+#include "tracer/rendering/resolve.h"
 
 namespace raywalk {
 namespace {

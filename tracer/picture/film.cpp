@@ -15,6 +15,11 @@ void Film::resize(int pixels_wide, int pixels_high) {
     clear();
 }
 
+TileRectangle tile_rectangle(const Film& film, int tile) {
+    const int x = tile % film.tiles_x * tile_size, y = tile / film.tiles_x * tile_size;
+    return {x, y, std::min(tile_size, film.width - x), std::min(tile_size, film.height - y)};
+}
+
 void Film::clear() { std::fill(samples.begin(), samples.end(), 0); }
 
 namespace {

@@ -35,6 +35,12 @@ struct Film {
     void clear();
 };
 
+// Where a tile lies in the picture, and how much of it lies inside.
+struct TileRectangle {
+    int x, y, columns, rows;  // pixels
+};
+TileRectangle tile_rectangle(const Film& film, int tile);
+
 // The one factor between a tile's sums and its values, so that files and windows agree bit for bit: every value is
 // sum * film_scale(exposure, samples). 0 for no samples.
 inline float film_scale(float exposure, std::uint32_t samples) {

@@ -36,6 +36,7 @@ void Renderer::set_view(const View& view) {
 // A pixel's samples are added in the order 0, 1, 2, ... whatever the visits and threads: same sums, bit for bit.
 bool Renderer::render_tile(int tile, std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
                            TileScratch& scratch) {
+    const TileRectangle place = tile_rectangle(film_, tile);
     FilmTile sums = film_.tiles[static_cast<std::size_t>(tile)];
     std::uint32_t& done = film_.samples[static_cast<std::size_t>(tile)];
     while (done < samples_per_pixel) {
@@ -46,8 +47,8 @@ bool Renderer::render_tile(int tile, std::uint32_t samples_per_pixel, const std:
                           .settings = view_.settings,
                           .width = view_.width,
                           .height = view_.height,
-                          .x = tile % film_.tiles_x * tile_size,
-                          .y = tile / film_.tiles_x * tile_size,
+                          .x = place.x,
+                          .y = place.y,
                           .first_sample = done,
                           .sample_count = std::min(samples_per_pixel - done, samples_per_visit)};
         RayCounts counts;
@@ -91,31 +92,6 @@ bool Renderer::render_until(std::uint32_t samples_per_pixel, const std::atomic<b
 void Renderer::close_film() {
     const std::lock_guard lock(commit_);
     is_closed_ = true;
-}
-
-std::vector<std::uint8_t> display_values(const Film& film, const Kernels& kernels, float exposure) {
-    const auto width = static_cast<std::size_t>(film.width);
-    std::vector<std::uint8_t> bytes(width * static_cast<std::size_t>(film.height) * 3);
-#pragma omp parallel for schedule(static)
-    for (int tile = 0; tile < static_cast<int>(film.tiles.size()); ++tile) {
-        const std::uint32_t samples = film.samples[static_cast<std::size_t>(tile)];
-        if (samples == 0) continue;
-        const int x = tile % film.tiles_x * tile_size, y = tile / film.tiles_x * tile_size;
-        const int columns = std::min(tile_size, film.width - x), rows = std::min(tile_size, film.height - y);
-        std::uint32_t words[tile_pixels];
-        kernels.resolve_tile(film.tiles[static_cast<std::size_t>(tile)], film_scale(exposure, samples), columns, rows,
-                             words, tile_size);
-        for (int row = 0; row < rows; ++row)
-            for (int column = 0; column < columns; ++column) {
-                const std::uint32_t word = words[row * tile_size + column];
-                std::uint8_t* pixel =
-                    &bytes[(static_cast<std::size_t>(y + row) * width + static_cast<std::size_t>(x + column)) * 3];
-                pixel[0] = static_cast<std::uint8_t>(word >> 16);
-                pixel[1] = static_cast<std::uint8_t>(word >> 8);
-                pixel[2] = static_cast<std::uint8_t>(word);
-            }
-    }
-    return bytes;
 }
 
 }  // namespace raywalk

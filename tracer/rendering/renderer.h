@@ -55,8 +55,4 @@ class Renderer {
     bool is_closed_ = false;                   // under commit_
 };
 
-// Display values of a film, 3 bytes a pixel, rows from the top: round(255 clamp(mean * exposure)), by the same
-// kernel as the window's. Tiles without a sample are black.
-std::vector<std::uint8_t> display_values(const Film& film, const Kernels& kernels, float exposure);
-
 }  // namespace raywalk
