@@ -7,7 +7,7 @@
 
 namespace raywalk {
 
-// What is the same for all pixels of a tile: reckoned in double precision from the tile's corner, so that pixels of
+// What is the same for all pixels of a tile: computed in double precision from the tile's corner, so that pixels of
 // large pictures far from the middle are as sharp as the others.
 struct TileCamera {
     int x, y, width, height;
