@@ -65,12 +65,14 @@ TEST(OpenBeneath, NoLinkIsFollowedOnTheWay) {
     fs::create_symlink(other.path() / "secret", folder.path() / "a/b/link");
     fs::create_symlink("file", folder.path() / "a/b/near");
     const Descriptor root(open(folder.path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
-    EXPECT_TRUE(open_beneath(root, "a/b/file").valid());
-    for (const char* name :
-         {"a/away/secret", "a/b/link", "a/b/near", "a/../../" /* beyond it */, "a/b/none", "/etc/passwd"})
-        EXPECT_FALSE(open_beneath(root, name).valid()) << name;
-    EXPECT_FALSE(open_beneath(root, "a/b/link").valid());
-    EXPECT_EQ(errno, ELOOP);
+    for (const auto open_one : {open_beneath, open_by_components}) {
+        EXPECT_TRUE(open_one(root, "a/b/file").valid());
+        for (const char* name :
+             {"a/away/secret", "a/b/link", "a/b/near", "a/../../" /* beyond it */, "a/b/none", "/etc/passwd"})
+            EXPECT_FALSE(open_one(root, name).valid()) << name;
+        EXPECT_FALSE(open_one(root, "a/b/link").valid());
+        EXPECT_EQ(errno, ELOOP);
+    }
 }
 
 }  // namespace
