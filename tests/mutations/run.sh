@@ -27,15 +27,16 @@ source tests/mutations/faults.sh
 count=${#files[@]}
 
 build() { ninja -C "$work/build" "$@" >"$work/build.log" 2>&1 || { tail -20 "$work/build.log"; return 1; }; }
-# A fault may also show as a crash, or as a run without end.
-passes() { timeout 120 "$work/build/$1" --gtest_filter="$2" --gtest_brief=1 >"$work/test.log" 2>&1; }
+# passes EXECUTABLE TESTS SECONDS: a fault may also show as a crash, or as a run without end. Without one they may take long
+# where fuzzers and lint have the cores.
+passes() { timeout "$3" "$work/build/$1" --gtest_filter="$2" --gtest_brief=1 >"$work/test.log" 2>&1; }
 
 build $(printf '%s\n' "${executables[@]}" | sort -u)
 declare -A seen=()
 for ((i = 0; i < count; ++i)); do
     [[ -z ${seen[${executables[i]} ${filters[i]}]:-} ]] || continue
     seen[${executables[i]} ${filters[i]}]=yes
-    passes "${executables[i]}" "${filters[i]}" || { cat "$work/test.log"; echo "fails without a fault"; exit 1; }
+    passes "${executables[i]}" "${filters[i]}" 600 || { cat "$work/test.log"; echo "${filters[i]} fails without a fault"; exit 1; }
     grep -q 'PASSED.* [1-9][0-9]* test' "$work/test.log" || { echo "no test is called ${filters[i]}"; exit 1; }
 done
 
@@ -50,7 +51,7 @@ for ((i = 0; i < count; ++i)); do
         printf '%s\n' "${text%%"${olds[i]}"*}${news[i]}$rest" >"$tree/${files[i]}"
         if ! build "${executables[i]}"; then
             outcome="NOT BUILT"
-        elif passes "${executables[i]}" "${filters[i]}"; then
+        elif passes "${executables[i]}" "${filters[i]}" 120; then
             outcome="SURVIVED ${filters[i]}"
         fi
         cp "${files[i]}" "$tree/${files[i]}"

@@ -166,18 +166,18 @@ TEST(RenderThread, AnotherExposureCostsNoSample) {
 }
 
 TEST(RenderThread, EndsEarlierWhereTwiceTheSamplesChangeNoValue) {
-    Bench bench(128);
+    Bench bench(64);
     bench.until_still = true;
     const auto render = bench.start(bench.opening);
     bench.finished_frame(1);
-    EXPECT_EQ(bench.finished_at, 128u) << "edges and highlights still change";
+    EXPECT_EQ(bench.finished_at, 64u) << "edges and highlights still change";
     View away = bench.opening;
     away.camera.direction = {0, 1, 0};  // nothing but black
     away.camera.up = {0, 0, 1};
     bench.finished_frame(render->show(away, false));
     EXPECT_EQ(bench.finished_at, 32u) << "as at 16";
     bench.finished_frame(render->show(bench.opening, false));
-    EXPECT_EQ(bench.finished_at, 128u) << "another view begins anew";
+    EXPECT_EQ(bench.finished_at, 64u) << "another view begins anew";
 }
 
 TEST(RenderThread, TracesNothingWhileItRests) {
