@@ -16,7 +16,7 @@ namespace raywalk {
 
 namespace {
 
-constexpr std::size_t piece = std::size_t{4} << 20;  // bytes that one thread reads at a time
+constexpr std::size_t piece_bytes = std::size_t{4} << 20;  // bytes that one thread reads at a time
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -88,11 +88,11 @@ FileBytes read_bytes(const Descriptor& fd, std::uint64_t most_bytes, bool text) 
     FileBytes bytes(size);
     std::atomic<long> error{0};
     std::atomic<bool> changed{false};
-    const auto pieces = static_cast<long>((size + piece - 1) / piece);
+    const auto pieces = static_cast<long>((size + piece_bytes - 1) / piece_bytes);
 #pragma omp parallel for schedule(dynamic) if (pieces > 1)
     for (long i = 0; i < pieces; ++i) {
-        const std::size_t begin = static_cast<std::size_t>(i) * piece;
-        const std::size_t end = std::min<std::size_t>(begin + piece, size);
+        const std::size_t begin = static_cast<std::size_t>(i) * piece_bytes;
+        const std::size_t end = std::min<std::size_t>(begin + piece_bytes, size);
         const long n = read_piece(fd.get(), bytes.data(), begin, end);
         if (n < 0)
             error = -n;

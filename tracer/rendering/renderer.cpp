@@ -65,7 +65,7 @@ bool Renderer::render_tile(int tile, std::uint32_t samples_per_pixel, const std:
 bool Renderer::render_until(std::uint32_t samples_per_pixel, const std::atomic<bool>& cancel,
                             const std::function<void(int)>& tile_done) {
     TileShares shares(static_cast<int>(film_.tiles.size()), threads_);
-    bool cancelled = false;
+    std::atomic<bool> cancelled = false;
 
 #pragma omp parallel num_threads(threads_)
     {
@@ -78,8 +78,7 @@ bool Renderer::render_until(std::uint32_t samples_per_pixel, const std::atomic<b
                 own_cancelled = !render_tile(tile, samples_per_pixel, cancel, scratch);
                 if (!own_cancelled && tile_done) tile_done(tile);
             }
-#pragma omp critical
-        cancelled |= own_cancelled;
+        if (own_cancelled) cancelled = true;
     }
 
     const std::lock_guard lock(commit_);
