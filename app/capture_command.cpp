@@ -51,6 +51,8 @@ class Capture {
 
     // Everything of the view that there is time for before an interrupt.
     void trace(const View& view) { trace(view, samples_); }
+    // Multiplies the exposure of the opening view.
+    void expose(float factor) { exposure_factor_ = factor; }
     void save(const std::filesystem::path& file);
 
     [[nodiscard]] SavingReserve& reserve() { return reserve_; }
@@ -79,6 +81,7 @@ class Capture {
     Renderer renderer_;
     std::uint32_t samples_;
     std::optional<float> exposure_;  // none yet: of the picture itself
+    float exposure_factor_ = 1;
     double traced_seconds_ = 0;
 };
 
@@ -89,8 +92,9 @@ void Capture::save(const std::filesystem::path& file) {
         write_image(file, radiance_rows(film), saving_now());
         return;
     }
+    const float exposure = (exposure_ ? *exposure_ : normalizing_exposure(film)) * exposure_factor_;
     publish_film(presenter_.exchange(), presenter_.preferred_content(), {.samples = renderer_.samples()}, film,
-                 renderer_.kernels(), exposure_ ? *exposure_ : normalizing_exposure(film), renderer_.threads());
+                 renderer_.kernels(), exposure, renderer_.threads());
     const std::vector<std::uint32_t> words = presenter_.present(film.width, film.height);
     write_image(file, film.width, film.height, rgb_bytes(words), saving_now());
 }
@@ -120,9 +124,12 @@ int capture(const Options& options, const LoadedScene& loaded) {
 
     View view = opening_view(options, loaded.scene);
     std::size_t frames = 0;
+    int presses = 0;  // of the exposure
     for (const WalkKey key : options.keys) {
         if (key == WalkKey::quit || interrupted()) break;
         view.camera = pressed(view.camera, key);
+        presses += exposure_presses(key);
+        capture.expose(exposure_factor(presses));
         if (!options.frames) continue;
         capture.trace(view);
         if (interrupted()) break;  // OUT holds what there is of this frame

@@ -43,7 +43,7 @@ void render(Renderer& renderer, std::uint32_t samples, bool quiet, const std::fu
     }
 }
 
-// `exposure`: none where that of the picture itself counts.
+// `exposure`: none where that of the picture itself counts. Keys of the script multiply either.
 void save(const Renderer& renderer, const Options& options, std::optional<float> exposure) {
     const UnbreakableSaving unbreakable(appears_whole(options.output));
     const Film& film = renderer.film();
@@ -51,7 +51,8 @@ void save(const Renderer& renderer, const Options& options, std::optional<float>
         write_image(options.output, radiance_rows(film), saving_now());
         return;
     }
-    const float factor = exposure ? *exposure : normalizing_exposure(film);
+    const float keys = exposure_factor(exposure_presses(options.keys));
+    const float factor = (exposure ? *exposure : normalizing_exposure(film)) * keys;
     write_image(options.output, film.width, film.height, display_values(film, renderer.kernels(), factor),
                 saving_now());
 }

@@ -72,11 +72,13 @@ int walk_in_window(const Options& options, const LoadedScene& loaded) {
     opening.settings.one_shot = limit == 1;
     View view = opening;
     view.camera = pressed(view.camera, options.keys);
+    const int scripted_presses = exposure_presses(options.keys);
 
     Renderer renderer(loaded.compiled, select_kernels(options.isa), options.threads);
     RenderThread render(renderer, presenter.exchange(),
                         {.opening = at_own_size(opening, loaded.scene),
                          .exposure = options.exposure.value_or(Exposure{}).value,
+                         .exposure_factor = exposure_factor(scripted_presses),
                          .sample_limit = limit,
                          .until_still = !options.samples_per_pixel,
                          .content = presenter.preferred_content(),
@@ -85,6 +87,7 @@ int walk_in_window(const Options& options, const LoadedScene& loaded) {
     const WalkRecord record = walk_loop(window, presenter, render,
                                         {.name = name,
                                          .view = view,
+                                         .exposure_presses = scripted_presses,
                                          .sample_limit = limit,
                                          .quit_at_once = std::ranges::count(options.keys, WalkKey::quit) > 0});
     render.stop();

@@ -210,8 +210,8 @@ CommandLine::CommandLine() {
 
     group("walking by script");
     value("--keys", "SCRIPT",
-          "keys of the walk to press first: '12w 3R t' is 12 steps forward,\n"
-          "3 turns to the right, the other projection",
+          "keys of the walk to press first: '12w 3R t ]' is 12 steps forward,\n"
+          "3 turns to the right, the other projection, brighter",
           options.keys, parse_walk_script);
     value("--frames", "PATTERN", "with --capture: also write the frame after every key, as walk-%04d.png",
           options.frames, frame_pattern)

@@ -70,8 +70,6 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers
         if ((modifiers & GLFW_MOD_CONTROL) == 0 || letter_of(key, label) != 'q') return;
         known = WalkKey::quit;
     }
-    if (down && key == GLFW_KEY_RIGHT_BRACKET) ++self.exposure_presses;
-    if (down && key == GLFW_KEY_LEFT_BRACKET) --self.exposure_presses;
     if (!known) return;
     if (down)
         self.input.press(*known, now);
@@ -119,8 +117,11 @@ std::optional<WalkKey> walk_key(int glfw_key, const Label& label) {
         case 'q':
             return WalkKey::quit;
         default:
-            return {};
+            break;
     }
+    if (glfw_key == GLFW_KEY_LEFT_BRACKET) return WalkKey::darker;
+    if (glfw_key == GLFW_KEY_RIGHT_BRACKET) return WalkKey::brighter;
+    return {};
 }
 
 Window::Window(glm::ivec2 size, const std::string& title) {

@@ -25,7 +25,7 @@ char letter_of(int glfw_key, const Label& label);
 
 // What a key of the keyboard does. Walking goes by the key's place, so that W, S, A, D lie as they do on a US keyboard
 // whatever is printed on them; T and Q go by letter_of, so that the key labelled A of a French keyboard, in the place
-// of Q, does not quit. Escape and Ctrl+Q quit everywhere.
+// of Q, does not quit. [ and ] go by place where no T or Q is printed on it. Escape and Ctrl+Q quit everywhere.
 std::optional<WalkKey> walk_key(int glfw_key, const Label& label);
 
 class Window {
@@ -49,7 +49,6 @@ class Window {
 
     // What the events said. The reader clears what it has acted upon.
     Input input;
-    int exposure_presses = 0;  // of ], less those of [
     bool resized = false;
     bool damaged = false;  // to be drawn again
     [[nodiscard]] bool close_requested() const;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "app/walk/walk.h"
-
 namespace raywalk {
 namespace {
 
@@ -64,6 +62,7 @@ void Input::apply(const Event& event, Camera& camera) {
     if (!index) {
         if (!event.down) return;
         camera = pressed(camera, event.key);
+        exposure_presses_ += raywalk::exposure_presses(event.key);
         if (event.key != WalkKey::quit) return;
         quit_ = true;
         held_ = {};  // nothing moves any more

@@ -1,4 +1,5 @@
-// Keys of the walk, by time: what is pressed and held between two moments moves the camera (spec 2).
+// Keys of the walk, by time: what is pressed and held between two moments moves the camera (spec 2). Presses of the
+// exposure are counted.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "app/walk/walk_script.h"
+#include "app/walk/walk.h"
 #include "tracer/picture/camera.h"
 
 namespace raywalk {
@@ -30,6 +31,8 @@ class Input {
     // Whether the camera moves or will move by keys that are down.
     [[nodiscard]] bool moving() const;
     [[nodiscard]] bool quit() const { return quit_; }
+    // Of all that advance has seen, to be given to exposure_factor.
+    [[nodiscard]] int exposure_presses() const { return exposure_presses_; }
 
   private:
     struct Event {
@@ -48,6 +51,7 @@ class Input {
     std::vector<Event> events_;
     std::array<Held, 8> held_;  // by index_of
     double now_ = 0;
+    int exposure_presses_ = 0;
     bool quit_ = false;
 };
 

@@ -28,7 +28,11 @@ double seconds_between(auto from, auto to) { return std::chrono::duration<double
 }  // namespace
 
 RenderThread::RenderThread(Renderer& renderer, FrameExchange& exchange, Setup setup, const View& view)
-    : renderer_(renderer), exchange_(exchange), setup_(std::move(setup)), goal_{.view = view} {
+    : renderer_(renderer),
+      exchange_(exchange),
+      setup_(std::move(setup)),
+      goal_{.view = view},
+      exposure_factor_(setup_.exposure_factor) {
     thread_ = std::thread([this] { run(); });
 }
 
@@ -58,7 +62,7 @@ std::uint64_t RenderThread::show(const View& view, bool moving) {
 
 void RenderThread::expose(float factor) {
     const std::lock_guard lock(mutex_);
-    exposure_factor_ = exposure_factor_ * factor;
+    exposure_factor_ = factor;
     ++goal_.exposure_id;
     changed_.notify_all();
 }

@@ -22,6 +22,7 @@ class RenderThread {
     struct Setup {
         View opening;                    // exposure is normalised to this picture (spec 4.8), of its own size
         std::optional<float> exposure;   // a fixed factor instead
+        float exposure_factor = 1;       // multiplies either: what the user's keys made of it
         std::uint32_t sample_limit = 1;  // a pixel; then the thread sleeps
         bool until_still = false;        // or earlier, when twice the samples changed no display value
         FrameContent content = FrameContent::display;
@@ -34,7 +35,7 @@ class RenderThread {
     // What to show from now on. `moving`: the next view is about to come, so a small frame soon is better than a
     // large one. Returns the id that frames of this view carry.
     std::uint64_t show(const View& view, bool moving);
-    // Multiplies the exposure by `factor`; costs no sample.
+    // Setup's exposure_factor from now on; costs no sample.
     void expose(float factor);
 
     // Traces nothing while nobody sees it.
@@ -84,7 +85,7 @@ class RenderThread {
     std::exception_ptr failure_;
     std::atomic<std::uint64_t> goal_id_ = 1;
     std::atomic<bool> stopping_ = false, resting_ = false;
-    std::atomic<float> exposure_factor_ = 1;  // the user's
+    std::atomic<float> exposure_factor_;
 
     // This thread's own.
     FramePacing pacing_;

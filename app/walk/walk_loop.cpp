@@ -1,7 +1,6 @@
 #include "app/walk/walk_loop.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <optional>
@@ -18,7 +17,6 @@ constexpr double longest_step = 0.1;           // of held keys: after a stall th
 constexpr double standing_after = 0.15;        // a key that is held in vain, at the end of a turn, moves nothing
 constexpr double idle_interval = 0.2;          // between looks for a signal to end
 constexpr double title_interval = 0.25;
-constexpr float exposure_per_press = 1.25f;
 
 double aspect(glm::ivec2 size) { return static_cast<double>(size.x) / size.y; }
 
@@ -47,6 +45,7 @@ struct Walk {
     WalkRecord record = {};
 
     View view = setup.view;
+    int exposure_presses = 0;  // of the window's keys, that the render thread knows of
     bool visible = false, present_again = false, title_stale = false;
     double next_present = 0, next_title = 0, last_change = -standing_after;
     double last_shown = 0;
@@ -82,12 +81,12 @@ void Walk::follow_input(double now) {
         window.resized = false;
         follow_size();
     }
-    if (window.exposure_presses != 0) {
-        render.expose(std::pow(exposure_per_press, static_cast<float>(window.exposure_presses)));
-        window.exposure_presses = 0;
-    }
     window.input.skip(now - longest_step);
     view.camera = window.input.advance(view.camera, now);
+    if (const int presses = window.input.exposure_presses(); presses != exposure_presses) {
+        exposure_presses = presses;
+        render.expose(exposure_factor(setup.exposure_presses + presses));
+    }
     moving = window.input.moving() && now - last_change < standing_after;
     const std::uint64_t id = render.show(view, moving);
     if (id == newest_id) return;

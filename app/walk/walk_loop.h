@@ -13,6 +13,7 @@ namespace raywalk {
 struct WalkSetup {
     std::string name;                // of the scene, for the title
     View view;                       // the first one, keys of the command line already pressed
+    int exposure_presses = 0;        // of those keys; the render thread was made with them
     std::uint32_t sample_limit = 1;  // a pixel
     bool quit_at_once = false;       // after the first whole picture
 };

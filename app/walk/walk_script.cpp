@@ -4,16 +4,16 @@
 #include <cctype>
 #include <string>
 
-#include "app/walk/walk.h"
 #include "tracer/ground/error.h"
 
 namespace raywalk {
 
 namespace {
 
-constexpr std::string_view letters = "wsadUDLRtq";
+constexpr std::string_view letters = "wsadUDLRt[]q";
 constexpr std::string_view expected_letters =
-    "expected w s a d (move), U D L R (turn), t (projection) or q (quit), each with a count before it or without";
+    "expected w s a d (move), U D L R (turn), t (projection), [ ] (darker, brighter) or q (quit), each with a count "
+    "before it or without";
 
 [[noreturn]] void fail(std::string_view text, std::string_view name, std::size_t at, std::size_t length,
                        std::string what, std::string expected) {
@@ -68,41 +68,6 @@ WalkScript parse_walk_script(std::string_view text, std::string_view name) {
         ++i;
     }
     return script;
-}
-
-Camera pressed(const Camera& camera, WalkKey key) {
-    switch (key) {
-        case WalkKey::forward:
-            return walk(camera, {.forward = 1});
-        case WalkKey::back:
-            return walk(camera, {.forward = -1});
-        case WalkKey::left:
-            return walk(camera, {.right = -1});
-        case WalkKey::right:
-            return walk(camera, {.right = 1});
-        case WalkKey::turn_up:
-            return walk(camera, {.turn_up = 1});
-        case WalkKey::turn_down:
-            return walk(camera, {.turn_up = -1});
-        case WalkKey::turn_left:
-            return walk(camera, {.turn_right = -1});
-        case WalkKey::turn_right:
-            return walk(camera, {.turn_right = 1});
-        case WalkKey::toggle:
-            return toggled_projection(camera);
-        case WalkKey::quit:
-            break;
-    }
-    return camera;
-}
-
-Camera pressed(const Camera& camera, const WalkScript& script) {
-    Camera walked = camera;
-    for (const WalkKey key : script) {
-        if (key == WalkKey::quit) break;
-        walked = pressed(walked, key);
-    }
-    return walked;
 }
 
 }  // namespace raywalk

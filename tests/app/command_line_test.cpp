@@ -104,6 +104,17 @@ TEST_F(CommandLine, KeysAreWalkedFirst) {
     EXPECT_EQ(picture({"--keys", "2w3R"}), picture({"--keys", "w w R R R"}));
 }
 
+TEST_F(CommandLine, KeysOfTheExposureScaleIt) {
+    const std::string still = picture({}), radiance = picture({}, "a.pfm");
+    EXPECT_NE(picture({"--keys", "3["}), still);
+    EXPECT_EQ(picture({"--keys", "3[ 3]"}), still);
+    EXPECT_EQ(picture({"--keys", "q 3["}), still);
+    EXPECT_EQ(picture({"--keys", "3]", "--exposure", "0.5"}), picture({"--exposure", "0.9765625"}));
+    EXPECT_EQ(picture({"--keys", "2[", "--exposure", "1.25"}), picture({"--exposure", "0.8"}));
+    EXPECT_EQ(picture({"--keys", "3] w", "--size", "32x24"}), picture({"--keys", "w 3]", "--size", "32x24"}));
+    EXPECT_EQ(picture({"--keys", "3]"}, "a.pfm"), radiance) << "radiance has no exposure";
+}
+
 TEST_F(CommandLine, ThreadsAndRepetitionDoNotChangeThePicture) {
     const std::string once = picture({"--spp", "5"}, "a.pfm");
     for (const char* threads : {"1", "2", "7", "16"})

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <initializer_list>
 #include <random>
 
 namespace raywalk {
@@ -87,33 +89,16 @@ TEST(Walk, NothingPressedChangesNoBit) {
     EXPECT_EQ(walk(camera, {.turn_right = 1}).eye, camera.eye);
 }
 
-TEST(Walk, HeldKeysMakeTenPressesASecond) {
-    EXPECT_EQ(held_for({.forward = true}, 1), (WalkInput{.forward = 10}));
-    EXPECT_EQ(held_for({.back = true, .left = true}, 0.5), (WalkInput{.forward = -5, .right = -5}));
-    EXPECT_EQ(held_for({.turn_up = true, .turn_left = true}, 0.1), (WalkInput{.turn_right = -1, .turn_up = 1}));
-}
-
-TEST(Walk, OppositeKeysCancel) {
-    EXPECT_EQ(held_for({.forward = true,
-                        .back = true,
-                        .left = true,
-                        .right = true,
-                        .turn_up = true,
-                        .turn_down = true,
-                        .turn_left = true,
-                        .turn_right = true},
-                       3),
-              WalkInput{});
-    EXPECT_FALSE(HeldKeys{}.any());
-    EXPECT_TRUE(HeldKeys{.turn_down = true}.any());
-}
-
 TEST(Walk, AHeldKeyLeadsToTheSamePlaceWhateverTheFrameRate) {
-    for (const HeldKeys keys : {HeldKeys{.forward = true}, HeldKeys{.turn_up = true, .turn_left = true},
-                                HeldKeys{.forward = true, .turn_right = true}}) {
+    for (const WalkInput second : {WalkInput{.forward = 10}, WalkInput{.turn_right = -10, .turn_up = 10},
+                                   WalkInput{.forward = 10, .turn_right = 10}}) {
         const auto after = [&](int frames) {
+            const WalkInput frame = {.forward = second.forward / frames,
+                                     .right = second.right / frames,
+                                     .turn_right = second.turn_right / frames,
+                                     .turn_up = second.turn_up / frames};
             Camera camera;
-            for (int i = 0; i < frames; ++i) camera = walk(camera, held_for(keys, 1.0 / frames));
+            for (int i = 0; i < frames; ++i) camera = walk(camera, frame);
             return camera;
         };
         const Camera slow = after(15), fast = after(240);
@@ -159,6 +144,46 @@ TEST(Walk, ThereAndBackEndsWhereItBegan) {
     for (int i = 0; i < 10; ++i) walked = walk(walked, {.turn_right = -1});
     expect_near(walked.eye, camera.eye);
     expect_near(walked.direction, camera.direction);
+}
+
+TEST(Walk, EachKeyDoesWhatTheWindowsKeyDoes) {
+    using enum WalkKey;
+    const Camera camera;
+    EXPECT_EQ(pressed(camera, forward).eye, glm::dvec3(0, 0, -0.5));
+    EXPECT_EQ(pressed(camera, back).eye, glm::dvec3(0, 0, 0.5));
+    EXPECT_EQ(pressed(camera, left).eye, glm::dvec3(-0.5, 0, 0));
+    EXPECT_EQ(pressed(camera, right).eye, glm::dvec3(0.5, 0, 0));
+    EXPECT_GT(pressed(camera, turn_up).direction.y, 0);
+    EXPECT_LT(pressed(camera, turn_down).direction.y, 0);
+    EXPECT_LT(pressed(camera, turn_left).direction.x, 0);
+    EXPECT_GT(pressed(camera, turn_right).direction.x, 0);
+    EXPECT_EQ(pressed(camera, toggle).projection, Projection::orthographic);
+    EXPECT_EQ(pressed(camera, std::array{toggle, toggle}), camera);
+    for (const WalkKey key : {darker, brighter, quit}) EXPECT_EQ(pressed(camera, key), camera);
+}
+
+TEST(Walk, PressesEndAtTheFirstQuit) {
+    using enum WalkKey;
+    const Camera camera;
+    EXPECT_EQ(pressed(camera, std::array{forward, forward, quit, turn_left}),
+              pressed(camera, std::array{forward, forward}));
+    EXPECT_EQ(pressed(camera, std::array{quit}), camera);
+    EXPECT_EQ(exposure_presses(std::array{brighter, brighter, quit, brighter}), 2);
+}
+
+TEST(Walk, PressesOfTheExposureAddUpAndMultiply) {
+    using enum WalkKey;
+    const auto factor = [](std::initializer_list<WalkKey> keys) { return exposure_factor(exposure_presses(keys)); };
+    EXPECT_EQ(factor({}), 1);
+    EXPECT_EQ(factor({forward, turn_left, toggle}), 1);
+    EXPECT_EQ(factor({brighter}), 1.25f);
+    EXPECT_EQ(factor({brighter, forward, brighter, brighter}), 1.25f * 1.25f * 1.25f);
+    EXPECT_EQ(factor({darker}), 0.8f);
+    EXPECT_EQ(factor({darker, darker, darker, brighter, brighter, brighter}), 1);
+    for (const int many : {300, 1'000'000, -300, -1'000'000}) {
+        EXPECT_TRUE(std::isnormal(exposure_factor(many))) << many;
+        EXPECT_GT(exposure_factor(many), 0) << many;
+    }
 }
 
 }  // namespace

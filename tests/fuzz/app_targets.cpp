@@ -40,6 +40,8 @@ void walk_script(std::string_view input) {
         require(script.size() <= walk_script_presses, "the budget of presses");
         script.resize(std::min<std::size_t>(script.size(), 1000), WalkKey::quit);
         const Camera camera = pressed(Camera{}, script);
+        const float exposure = exposure_factor(exposure_presses(script));
+        require(std::isnormal(exposure) && exposure > 0, "an exposure");
         require(std::abs(glm::length(camera.direction) - 1) < 1e-9, "a view direction");
         require(std::abs(glm::dot(camera.right, camera.north)) < 1e-9, "a level horizon");
         require(glm::length(camera.eye) <= walk_script_presses, "an eye within reach");

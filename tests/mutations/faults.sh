@@ -123,6 +123,12 @@ fault "a step of a turned view goes the old way" app/walk/walk.cpp \
 fault "counts in a walk script are passed over" app/walk/walk_script.cpp \
     'counted ? count : 1' '1' \
     app_tests 'WalkScript.*'
+fault "[ brightens too" app/walk/walk.cpp \
+    'WalkKey::darker ? -1 : 0' 'WalkKey::darker ? 1 : 0' \
+    app_tests 'Walk.PressesOfTheExposureAddUpAndMultiply'
+fault "pictures are as bright whatever the keys" app/render_command.cpp \
+    'exposure_factor(exposure_presses(options.keys))' 'exposure_factor(0)' \
+    command_line_tests 'CommandLine.KeysOfTheExposureScaleIt'
 fault "a forgotten value swallows the next option" app/command_line/options.cpp \
     "word.starts_with('-') && app.get_option_no_throw(word) != nullptr" 'false' \
     app_tests 'Options.WhatIsMissingIsNamed'

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+#include <vector>
 
 #include "app/display/window.h"
 #include "app/walk/walk.h"
-#include "app/walk/walk_script.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -42,7 +42,7 @@ TEST(Input, AShortPressThatFramesCutIntoPiecesIsStillOneStep) {
 
 TEST(Input, PressesBetweenTwoFramesAllCountInTheirOrder) {
     Input input;
-    WalkScript script;
+    std::vector<WalkKey> script;
     double now = 5;
     for (const WalkKey key : {WalkKey::forward, WalkKey::turn_left, WalkKey::forward, WalkKey::forward,
                               WalkKey::turn_up, WalkKey::right, WalkKey::toggle}) {
@@ -62,6 +62,25 @@ TEST(Input, AHeldKeyMovesTenStepsASecondHoweverTheTimeIsCut) {
         input.release(WalkKey::forward, 2);
         camera = input.advance(camera, 3);
         EXPECT_NEAR(steps_forward(camera), 2 * walk_presses_per_second, 1e-9) << "frames of " << frame << " s";
+    }
+}
+
+TEST(Input, HeldKeysMakeTenPressesASecond) {
+    struct Case {
+        std::vector<WalkKey> keys;
+        double seconds;
+        WalkInput sum;
+    };
+    using enum WalkKey;
+    for (const auto& [keys, seconds, sum] :
+         {Case{{forward}, 1, {.forward = 10}}, Case{{back, left}, 0.5, {.forward = -5, .right = -5}},
+          Case{{right}, 0.7, {.right = 7}}, Case{{turn_up, turn_left}, 0.1, {.turn_right = -1, .turn_up = 1}},
+          Case{{turn_down, turn_right}, 0.5, {.turn_right = 5, .turn_up = -5}}}) {
+        Input input;
+        for (const WalkKey key : keys) input.press(key, 0);
+        const Camera camera = input.advance(start(), seconds), expected = walk(start(), sum);
+        EXPECT_LT(glm::length(camera.eye - expected.eye), 1e-9) << static_cast<char>(keys.front());
+        EXPECT_LT(glm::length(camera.direction - expected.direction), 1e-9) << static_cast<char>(keys.front());
     }
 }
 
@@ -90,6 +109,22 @@ TEST(Input, OppositeKeysCancelWhileBothAreDown) {
     EXPECT_TRUE(input.moving());
 }
 
+TEST(Input, EveryPairOfOppositeKeysCancels) {
+    using enum WalkKey;
+    Input input;
+    EXPECT_FALSE(input.moving());
+    for (const WalkKey key : {forward, back, left, right, turn_up, turn_down, turn_left, turn_right}) {
+        Input alone;
+        alone.press(key, 0);
+        alone.advance(start(), 0);
+        EXPECT_TRUE(alone.moving()) << static_cast<char>(key);
+        input.press(key, 0);
+    }
+    const Camera camera = input.advance(start(), 0);
+    EXPECT_FALSE(input.moving());
+    EXPECT_EQ(input.advance(camera, 3), camera);
+}
+
 TEST(Input, TheOppositeKeyGoesOnWhenTheFirstIsReleased) {
     Input input;
     input.press(WalkKey::left, 0);
@@ -114,11 +149,30 @@ TEST(Input, LosingTheFocusReleasesEveryKey) {
     EXPECT_EQ(input.advance(camera, 100), camera);
 }
 
+TEST(Input, PressesOfTheExposureAreCounted) {
+    Input input;
+    Camera camera = start();
+    for (const WalkKey key : {WalkKey::brighter, WalkKey::brighter, WalkKey::darker, WalkKey::brighter}) {
+        input.press(key, 1);
+        EXPECT_FALSE(input.moving());
+        camera = input.advance(camera, 5);  // held for long: one press still
+        input.release(key, 5);
+    }
+    EXPECT_EQ(camera, start());
+    EXPECT_EQ(input.exposure_presses(), 2);
+    input.press(WalkKey::darker, 6);
+    EXPECT_EQ(input.exposure_presses(), 2) << "no advance has seen it";
+    input.advance(camera, 6);
+    EXPECT_EQ(input.exposure_presses(), 1);
+}
+
 TEST(Input, NothingMovesAfterQuit) {
     Input input;
     input.press(WalkKey::quit, 1);
     input.press(WalkKey::forward, 2);
+    input.press(WalkKey::brighter, 2);
     EXPECT_EQ(input.advance(start(), 2.01), start());
+    EXPECT_EQ(input.exposure_presses(), 0);
     EXPECT_TRUE(input.quit());
 }
 
@@ -138,6 +192,10 @@ TEST(Keyboard, WalkingGoesByPlaceAndQuitByLabel) {
     EXPECT_EQ(walk_key(GLFW_KEY_Q, {"/", false}), WalkKey::quit) << "Hebrew";
     EXPECT_EQ(walk_key(GLFW_KEY_T, {"\u03c4", false}), WalkKey::toggle) << "Greek";
     EXPECT_EQ(walk_key(GLFW_KEY_SLASH, {"q", false}), std::nullopt);
+    EXPECT_EQ(walk_key(GLFW_KEY_LEFT_BRACKET, {"["}), WalkKey::darker);
+    EXPECT_EQ(walk_key(GLFW_KEY_RIGHT_BRACKET, {"+"}), WalkKey::brighter) << "QWERTZ: by place";
+    EXPECT_EQ(walk_key(GLFW_KEY_RIGHT_BRACKET, {"\u044a", false}), WalkKey::brighter) << "Cyrillic";
+    EXPECT_EQ(walk_key(GLFW_KEY_LEFT_BRACKET, {"q"}), WalkKey::quit) << "Turkish F: the key labelled Q";
     EXPECT_EQ(walk_key(GLFW_KEY_ESCAPE, {""}), WalkKey::quit);
     EXPECT_EQ(walk_key(GLFW_KEY_UP, {""}), WalkKey::turn_up);
 }

@@ -161,6 +161,11 @@ TEST(RenderThread, AnotherExposureCostsNoSample) {
     for (int i = 0; i < 600 && bench.finished_frame(1) != brighter; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_EQ(bench.finished_frame(1), brighter);
+    render->expose(1);  // a factor of the first exposure, not of the last
+    const auto first = bench.expected(bench.opening);
+    for (int i = 0; i < 600 && bench.finished_frame(1) != first; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(bench.finished_frame(1), first);
     render->stop();
     EXPECT_EQ(render->traced_seconds(), traced);
 }
