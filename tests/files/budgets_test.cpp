@@ -103,14 +103,16 @@ bool reaches_beside(const fs::path& folder) {
 
 TEST(SceneFolders, TheParentCountsWhereItLooksLikeAProject) {
     const TestFolder folder;
-    for (const char* name : {"one/scenes", "two/scenes", "two/objs", "two/other", "three/scenes", "three/objs",
-                             "three/textures", "home/scenes", "home/objs", "shared/scenes", "shared/objs"})
+    for (const char* name :
+         {"one/scenes", "two/scenes", "two/objs", "two/other", "three/scenes", "three/objs", "three/textures",
+          "four/scene", "four/texture", "home/scenes", "home/objs", "shared/scenes", "shared/objs"})
         fs::create_directories(folder.path() / name);
     EXPECT_FALSE(reaches_beside(folder.path() / "one/scenes")) << "nothing beside it";
     EXPECT_TRUE(reaches_beside(folder.path() / "two/scenes"));
     EXPECT_TRUE(reaches_beside(folder.path() / "two/objs"));
     EXPECT_FALSE(reaches_beside(folder.path() / "two/other"));
     EXPECT_TRUE(reaches_beside(folder.path() / "three/scenes"));
+    EXPECT_TRUE(reaches_beside(folder.path() / "four/scene")) << "as the report has them";
     ASSERT_EQ(chmod((folder.path() / "shared").c_str(), 01777), 0);
     EXPECT_FALSE(reaches_beside(folder.path() / "shared/scenes")) << "everybody may write there";
     const char* home = std::getenv("HOME");

@@ -42,7 +42,7 @@ bool is_home(const fs::path& folder) {
 }
 
 bool is_project(const fs::path& parent, const fs::path& folder) {
-    constexpr std::array<const char*, 3> names = {"scenes", "objs", "textures"};
+    constexpr std::array<const char*, 6> names = {"scenes", "objs", "textures", "scene", "obj", "texture"};
     if (std::ranges::find(names, folder.filename()) == names.end()) return false;
     std::error_code error;
     if (std::ranges::count_if(names, [&](const char* name) { return fs::is_directory(parent / name, error); }) < 2)

@@ -12,8 +12,8 @@ namespace raywalk {
 class SceneFolders {
   public:
     // `scene`: its file. Its project is the parent of its folder where that looks like one (two at least of `scenes`,
-    // `objs` and `textures` lie in it, and the scene's folder is one of them), and is neither the root of a file
-    // system, somebody's home, nor a folder that everybody may write to.
+    // `objs` and `textures`, or of these in the singular, lie in it, and the scene's folder is one of them), and is
+    // neither the root of a file system, somebody's home, nor a folder that everybody may write to.
     SceneFolders(const std::filesystem::path& scene, const Limits& limits);
 
     // Whether the scene may read a file; `real` is absolute, without links.
